@@ -6,7 +6,6 @@
 
 #include "adjustment/motion.h"
 #include "knowledge/angle.h"
-#include "supervisor/say.h"
 #include "supervisor/state.h"
 
 #define STEP_MM_S 25    // by so much at least a speed is raised again
@@ -24,10 +23,6 @@
 #define SLANT_MM 80u   // driven, back or another way, it is another place
 #define SLANT_CDEG 300 // turned, it is another way
 
-static argus_outbox_t *outbox(argus_t *const core) {
-    return &core->session.outbox;
-}
-
 void argus_hold_forget(argus_hold_client_t *const self) {
     const argus_given_t before = self->given;
     memset(&self->wish, 0, sizeof self->wish);
@@ -43,61 +38,62 @@ void argus_hold_forget(argus_hold_client_t *const self) {
 
 // Saying so ------------------------------------------------------------------------------------------------
 
-static void say_once(argus_t *const core, bool *const said, const argus_event_id_t event,
+static void say_once(const argus_grant_t *const grant, bool *const said, const argus_event_id_t event,
                      const int32_t value) {
     if (!*said) {
         *said = true;
-        argus_say(core, event, ARGUS_NO_SONAR, value);
+        argus_emit(grant->events, event, value);
     }
 }
 
 // Closed again after it was open for a while is news.
-static void tell_closed(argus_t *const core, argus_given_t *const given, const argus_bound_t *const bound) {
+static void tell_closed(const argus_grant_t *const grant, argus_given_t *const given,
+                        const argus_bound_t *const bound) {
     if (bound->speed_mm_s == 0) {
         given->open_sips = 0;
-        say_once(core, &given->held_said, ARGUS_EV_GUARD_HELD, (int32_t)bound->why);
+        say_once(grant, &given->held_said, ARGUS_EV_GUARD_HELD, (int32_t)bound->why);
     } else if (given->held_said) {
         given->open_sips++;
         given->held_said = given->open_sips < FREE_SIPS;
     }
 }
 
-static void tell_way(argus_t *const core, argus_given_t *const given, const argus_bound_t *const bound,
-                     const int32_t wanted_mm_s) {
-    tell_closed(core, given, bound);
+static void tell_way(const argus_grant_t *const grant, argus_given_t *const given,
+                     const argus_bound_t *const bound, const int32_t wanted_mm_s) {
+    tell_closed(grant, given, bound);
     if (bound->speed_mm_s >= argus_abs(wanted_mm_s)) {
         return;
     }
     given->free_sips = 0;
     if (bound->speed_mm_s > 0) {
-        say_once(core, &given->slowed_said, ARGUS_EV_GUARD_SLOWED, bound->speed_mm_s);
+        say_once(grant, &given->slowed_said, ARGUS_EV_GUARD_SLOWED, bound->speed_mm_s);
     }
 }
 
 // A bound that comes and goes is one.
-static void tell_free(argus_t *const core, argus_given_t *const given) {
+static void tell_free(const argus_grant_t *const grant, argus_given_t *const given) {
     given->free_sips = (uint8_t)argus_min(given->free_sips + 1, FREE_SIPS);
     if ((given->held_said || given->slowed_said || given->turn_said) && given->free_sips >= FREE_SIPS) {
         given->held_said = given->slowed_said = given->turn_said = false;
         given->free_sips = 0;
-        argus_say(core, ARGUS_EV_GUARD_FREE, ARGUS_NO_SONAR, 0);
+        argus_emit(grant->events, ARGUS_EV_GUARD_FREE, 0);
     }
 }
 
 // The way --------------------------------------------------------------------------------------------------
 
-static void set_speed(argus_t *const core, argus_hold_client_t *const self, const int32_t mm_s) {
-    if (mm_s > 0 && mm_s != self->given.setv_mm_s && argus_outbox_int(outbox(core), ARCOS_CMD_SETV, mm_s)) {
+static void set_speed(const argus_grant_t *const grant, argus_hold_client_t *const self, const int32_t mm_s) {
+    if (mm_s > 0 && mm_s != self->given.setv_mm_s && argus_outbox_int(grant->out, ARCOS_CMD_SETV, mm_s)) {
         self->given.setv_mm_s = mm_s;
     }
 }
 
-static void stand(argus_t *const core, argus_hold_client_t *const self, const bool anyway) {
+static void stand(const argus_grant_t *const grant, argus_hold_client_t *const self, const bool anyway) {
     argus_given_t *const given = &self->given;
     if (!given->rolls && !anyway) {
         return;
     }
-    if (argus_outbox_int(outbox(core), ARCOS_CMD_VEL, 0)) {
+    if (argus_outbox_int(grant->out, ARCOS_CMD_VEL, 0)) {
         given->rolls = given->moves = false;
         given->mm_s = given->move_mm = given->right = given->left = 0;
     }
@@ -123,9 +119,9 @@ static int32_t in_units(const int32_t mm_s) {
 }
 
 // Of the right and the left wheel, in its units.
-static bool send_pair(argus_t *const core, const int32_t right, const int32_t left) {
+static bool send_pair(const argus_grant_t *const grant, const int32_t right, const int32_t left) {
     const uint8_t data[] = {ARCOS_CMD_VEL2, ARCOS_ARG_POSITIVE, (uint8_t)right, (uint8_t)left};
-    return argus_outbox_packet(outbox(core), data, sizeof data);
+    return argus_outbox_packet(grant->out, data, sizeof data);
 }
 
 // What the robot turns on until it stands, were its turn ended with the next command. It turns no faster than
@@ -150,21 +146,21 @@ static argus_permit_t ask_speed(const argus_t *const core, const int32_t deg_s) 
     return deg_s == 0 ? ARGUS_PERMIT_GIVEN : ask_turn(core, widened(until_rest_cdeg(deg_s), LEAST_CDEG));
 }
 
-static void tell_turn(argus_t *const core, argus_given_t *const given, const argus_permit_t permit,
-                      const int32_t value) {
+static void tell_turn(const argus_grant_t *const grant, argus_given_t *const given,
+                      const argus_permit_t permit, const int32_t value) {
     given->free_sips = 0;
     if (permit == ARGUS_PERMIT_SWING) {
-        say_once(core, &given->turn_said, ARGUS_EV_GUARD_TURN_HELD, value);
+        say_once(grant, &given->turn_said, ARGUS_EV_GUARD_TURN_HELD, value);
     } else {
         given->open_sips = 0;
-        say_once(core, &given->held_said, ARGUS_EV_GUARD_HELD, (int32_t)argus_bound_why(permit));
+        say_once(grant, &given->held_said, ARGUS_EV_GUARD_HELD, (int32_t)argus_bound_why(permit));
     }
 }
 
 // Both wheels slowed alike: the curve stays. A turn on the spot is a turn, and so is what the units of VEL2
 // make of a curve.
-static void give_pair(argus_t *const core, argus_hold_client_t *const self, const argus_bound_t *const bound,
-                      const bool anyway) {
+static void give_pair(const argus_grant_t *const grant, argus_hold_client_t *const self,
+                      const argus_bound_t *const bound, const bool anyway) {
     const argus_wish_t *const wish = &self->wish;
     argus_given_t *const given = &self->given;
     const int32_t mm_s = bounded(bound, wish->mm_s, given->mm_s);
@@ -173,13 +169,13 @@ static void give_pair(argus_t *const core, argus_hold_client_t *const self, cons
     int32_t right = in_units(mm_s + half_mm_s);
     int32_t left = in_units(mm_s - half_mm_s);
     const int32_t deg_s = (right - left) * ARGUS_VEL2_UNIT_MM_S * ARGUS_DEG_PER_RAD /
-                          argus_max(1, core->knowledge.robot->track_mm);
-    const argus_permit_t permit = ask_speed(core, deg_s);
+                          argus_max(1, grant->core->knowledge.robot->track_mm);
+    const argus_permit_t permit = ask_speed(grant->core, deg_s);
     if (permit != ARGUS_PERMIT_GIVEN) {
-        tell_turn(core, given, permit, deg_s);
+        tell_turn(grant, given, permit, deg_s);
         right = left = in_units(mm_s);
     }
-    if ((anyway || right != given->right || left != given->left) && send_pair(core, right, left)) {
+    if ((anyway || right != given->right || left != given->left) && send_pair(grant, right, left)) {
         given->mm_s = mm_s;
         given->right = (int8_t)right;
         given->left = (int8_t)left;
@@ -188,13 +184,13 @@ static void give_pair(argus_t *const core, argus_hold_client_t *const self, cons
     }
 }
 
-static void give_speed(argus_t *const core, argus_hold_client_t *const self, const argus_bound_t *const bound,
-                       const bool anyway) {
+static void give_speed(const argus_grant_t *const grant, argus_hold_client_t *const self,
+                       const argus_bound_t *const bound, const bool anyway) {
     argus_given_t *const given = &self->given;
     const int32_t mm_s = bounded(bound, self->wish.mm_s, given->moves ? 0 : given->mm_s);
-    set_speed(core, self, self->setv_mm_s);
+    set_speed(grant, self, self->setv_mm_s);
     if ((anyway || given->moves || mm_s != given->mm_s) &&
-        argus_outbox_int(outbox(core), ARCOS_CMD_VEL, mm_s)) {
+        argus_outbox_int(grant->out, ARCOS_CMD_VEL, mm_s)) {
         given->mm_s = mm_s;
         given->rolls = mm_s != 0;
         given->moves = false;
@@ -206,14 +202,14 @@ static int32_t left_of(const argus_t *const core, const int32_t mm, const uint32
     return mm < 0 ? argus_min(0, mm + driven_mm) : argus_max(0, mm - driven_mm);
 }
 
-static void send_move(argus_t *const core, argus_hold_client_t *const self, const int32_t mm,
+static void send_move(const argus_grant_t *const grant, argus_hold_client_t *const self, const int32_t mm,
                       const int32_t mm_s) {
     argus_given_t *const given = &self->given;
-    set_speed(core, self, mm_s);
-    if (argus_outbox_int(outbox(core), ARCOS_CMD_MOVE, mm)) {
+    set_speed(grant, self, mm_s);
+    if (argus_outbox_int(grant->out, ARCOS_CMD_MOVE, mm)) {
         given->rolls = given->moves = true;
         given->move_mm = mm;
-        given->odometer_mm = core->knowledge.odometer_mm;
+        given->odometer_mm = grant->core->knowledge.odometer_mm;
     }
 }
 
@@ -227,17 +223,17 @@ static bool is_other(const argus_t *const core, const argus_hold_client_t *const
 }
 
 // A MOVE ends where it should without us, and is lengthened as more is seen.
-static void give_move(argus_t *const core, argus_hold_client_t *const self, const argus_bound_t *const bound,
-                      const bool anyway) {
-    const int32_t left_mm = left_of(core, self->wish.left_mm, self->wish.odometer_mm);
+static void give_move(const argus_grant_t *const grant, argus_hold_client_t *const self,
+                      const argus_bound_t *const bound, const bool anyway) {
+    const int32_t left_mm = left_of(grant->core, self->wish.left_mm, self->wish.odometer_mm);
     const int32_t mm = argus_min(argus_abs(left_mm), bound->way_mm);
     const int32_t mm_s = argus_min(self->setv_mm_s, bound->speed_mm_s / STEP_MM_S * STEP_MM_S);
     if (!anyway && argus_abs(left_mm) <= DONE_MM) {
         self->wish.way = ARGUS_WISH_REST;
     } else if (mm_s <= 0 || mm <= 0) {
-        stand(core, self, anyway);
-    } else if (anyway || is_other(core, self, left_mm, mm, mm_s)) {
-        send_move(core, self, left_mm < 0 ? -mm : mm, mm_s);
+        stand(grant, self, anyway);
+    } else if (anyway || is_other(grant->core, self, left_mm, mm, mm_s)) {
+        send_move(grant, self, left_mm < 0 ? -mm : mm, mm_s);
     }
 }
 
@@ -268,25 +264,25 @@ static argus_bound_t way_of(const argus_t *const core, argus_given_t *const give
     return bound;
 }
 
-static void give_way(argus_t *const core, argus_hold_client_t *const self, const bool anyway) {
+static void give_way(const argus_grant_t *const grant, argus_hold_client_t *const self, const bool anyway) {
     const argus_wish_t *const wish = &self->wish;
     const bool moves = wish->way == ARGUS_WISH_MOVE;
     if (wish->way == ARGUS_WISH_REST) { // the last of a MOVE the robot drives by itself
         if (anyway) {
-            stand(core, self, true);
+            stand(grant, self, true);
         }
         return;
     }
-    const argus_bound_t bound = way_of(core, &self->given, wants_ahead(core, wish));
+    const argus_bound_t bound = way_of(grant->core, &self->given, wants_ahead(grant->core, wish));
     if (moves || wish->mm_s != 0) {
-        tell_way(core, &self->given, &bound, moves ? self->setv_mm_s : wish->mm_s);
+        tell_way(grant, &self->given, &bound, moves ? self->setv_mm_s : wish->mm_s);
     }
     if (moves) {
-        give_move(core, self, &bound, anyway);
+        give_move(grant, self, &bound, anyway);
     } else if (wish->paired) {
-        give_pair(core, self, &bound, anyway);
+        give_pair(grant, self, &bound, anyway);
     } else {
-        give_speed(core, self, &bound, anyway);
+        give_speed(grant, self, &bound, anyway);
     }
 }
 
@@ -335,28 +331,28 @@ static int32_t wanted_deg(const argus_t *const core, const argus_wish_t *const w
     return wish->turn == ARGUS_WISH_RVEL ? wish->deg_s : left_cdeg(core, wish) / 100;
 }
 
-static void send_turn(argus_t *const core, argus_hold_client_t *const self, const bool closed) {
+static void send_turn(const argus_grant_t *const grant, argus_hold_client_t *const self, const bool closed) {
     const argus_wish_t *const wish = &self->wish;
     argus_given_t *const given = &self->given;
     given->has_head = !closed && wish->turn == ARGUS_WISH_HEAD;
     if (given->has_head) {
         given->head_cdeg = wish->heading_deg * 100;
-        argus_outbox_int(outbox(core), ARCOS_CMD_HEAD, wish->heading_deg);
+        argus_outbox_int(grant->out, ARCOS_CMD_HEAD, wish->heading_deg);
     } else {
         const bool turns = !closed && wish->turn == ARGUS_WISH_RVEL;
-        argus_outbox_int(outbox(core), ARCOS_CMD_RVEL, turns ? wish->deg_s : 0);
+        argus_outbox_int(grant->out, ARCOS_CMD_RVEL, turns ? wish->deg_s : 0);
     }
 }
 
-static void give_turn(argus_t *const core, argus_hold_client_t *const self, const bool anyway) {
+static void give_turn(const argus_grant_t *const grant, argus_hold_client_t *const self, const bool anyway) {
     argus_given_t *const given = &self->given;
-    const argus_permit_t permit = ask_wish(core, self);
+    const argus_permit_t permit = ask_wish(grant->core, self);
     const bool closed = permit != ARGUS_PERMIT_GIVEN;
-    if (closed && (anyway || wanted_deg(core, &self->wish) != 0)) {
-        tell_turn(core, given, permit, wanted_deg(core, &self->wish));
+    if (closed && (anyway || wanted_deg(grant->core, &self->wish) != 0)) {
+        tell_turn(grant, given, permit, wanted_deg(grant->core, &self->wish));
     }
     if (anyway || closed != given->turn_held) {
-        send_turn(core, self, closed);
+        send_turn(grant, self, closed);
     }
     given->turn_held = closed;
 }
@@ -377,35 +373,35 @@ static int gap_of(const argus_t *const core) {
     return argus_guard_gap(&guard);
 }
 
-static void begin_weaving(argus_t *const core, argus_given_t *const given) {
+static void begin_weaving(const argus_grant_t *const grant, argus_given_t *const given) {
     given->weave = (argus_weave_t){.side = 1};
-    given->base_cdeg = core->knowledge.pose.heading_cdeg;
-    argus_say(core, ARGUS_EV_GUARD_LOOKS, ARGUS_NO_SONAR, argus_weave_swing_cdeg(gap_of(core)) / 100);
+    given->base_cdeg = grant->core->knowledge.pose.heading_cdeg;
+    argus_emit(grant->events, ARGUS_EV_GUARD_LOOKS, argus_weave_swing_cdeg(gap_of(grant->core)) / 100);
 }
 
 // A look that may not be made is ended where the heading is.
-static void steer(argus_t *const core, argus_given_t *const given, const int32_t to_cdeg) {
-    const int32_t by_cdeg = argus_angle_wrap(to_cdeg - core->knowledge.pose.heading_cdeg);
-    if (ask_turn(core, by_cdeg) == ARGUS_PERMIT_GIVEN) {
-        argus_motion_steer(outbox(core), &core->knowledge, to_cdeg);
+static void steer(const argus_grant_t *const grant, argus_given_t *const given, const int32_t to_cdeg) {
+    const int32_t by_cdeg = argus_angle_wrap(to_cdeg - grant->core->knowledge.pose.heading_cdeg);
+    if (ask_turn(grant->core, by_cdeg) == ARGUS_PERMIT_GIVEN) {
+        argus_motion_steer(grant->out, &grant->core->knowledge, to_cdeg);
         given->turn_held = false;
     } else if (!given->turn_held) {
-        given->turn_held = argus_outbox_int(outbox(core), ARCOS_CMD_RVEL, 0);
+        given->turn_held = argus_outbox_int(grant->out, ARCOS_CMD_RVEL, 0);
     }
 }
 
-static void weave(argus_t *const core, argus_given_t *const given) {
+static void weave(const argus_grant_t *const grant, argus_given_t *const given) {
     if (given->weave.side == 0) {
-        begin_weaving(core, given);
+        begin_weaving(grant, given);
     }
-    const int32_t to_cdeg =
-        argus_weave_cdeg(&given->weave, gap_of(core), core->knowledge.pose.heading_cdeg, given->base_cdeg);
-    steer(core, given, to_cdeg);
+    const int32_t to_cdeg = argus_weave_cdeg(&given->weave, gap_of(grant->core),
+                                             grant->core->knowledge.pose.heading_cdeg, given->base_cdeg);
+    steer(grant, given, to_cdeg);
 }
 
-static void end_weaving(argus_t *const core, argus_hold_client_t *const self) {
+static void end_weaving(const argus_grant_t *const grant, argus_hold_client_t *const self) {
     if (self->given.weave.side != 0 && self->wish.turn == ARGUS_WISH_STRAIGHT && !self->wish.paired) {
-        steer(core, &self->given, self->given.base_cdeg);
+        steer(grant, &self->given, self->given.base_cdeg);
     }
     self->given.weave.side = 0;
 }
@@ -413,35 +409,37 @@ static void end_weaving(argus_t *const core, argus_hold_client_t *const self) {
 // ----------------------------------------------------------------------------------------------------------
 
 // What the outbox had no room for is given with the next SIP.
-static void give(argus_t *const core, argus_hold_client_t *const self, const bool way, const bool anyway) {
-    const uint32_t refused = outbox(core)->refused;
+static void give(const argus_grant_t *const grant, argus_hold_client_t *const self, const bool way,
+                 const bool anyway) {
+    const uint32_t refused = grant->out->refused;
     bool *const due = way ? &self->way_due : &self->turn_due;
     if (way) {
-        give_way(core, self, anyway || *due);
+        give_way(grant, self, anyway || *due);
     } else {
-        give_turn(core, self, anyway || *due);
+        give_turn(grant, self, anyway || *due);
     }
-    *due = outbox(core)->refused != refused;
+    *due = grant->out->refused != refused;
 }
 
-void argus_hold_way(argus_t *const core, argus_hold_client_t *const self) {
-    give(core, self, true, true);
+void argus_hold_way(const argus_grant_t *const grant, argus_hold_client_t *const self) {
+    give(grant, self, true, true);
 }
 
-void argus_hold_tell(argus_t *const core, argus_hold_client_t *const self, const argus_permit_t permit) {
-    tell_turn(core, &self->given, permit, 0);
+void argus_hold_tell(const argus_grant_t *const grant, argus_hold_client_t *const self,
+                     const argus_permit_t permit) {
+    tell_turn(grant, &self->given, permit, 0);
 }
 
 // RVEL 0, repeated, must not end the looks.
-void argus_hold_turn(argus_t *const core, argus_hold_client_t *const self) {
+void argus_hold_turn(const argus_grant_t *const grant, argus_hold_client_t *const self) {
     if (self->given.weave.side == 0 || self->wish.turn != ARGUS_WISH_STRAIGHT) {
-        give(core, self, false, true);
+        give(grant, self, false, true);
     }
 }
 
-void argus_hold_still(argus_t *const core, argus_hold_client_t *const self) {
+void argus_hold_still(const argus_grant_t *const grant, argus_hold_client_t *const self) {
     argus_given_t *const given = &self->given;
-    argus_outbox_urgent(outbox(core), ARCOS_CMD_STOP);
+    argus_outbox_urgent(grant->out, ARCOS_CMD_STOP);
     given->rolls = given->moves = given->has_head = false;
     given->mm_s = given->move_mm = given->right = given->left = 0;
     given->weave.side = 0;
@@ -449,7 +447,7 @@ void argus_hold_still(argus_t *const core, argus_hold_client_t *const self) {
 }
 
 // S2: once for each contact; what the client wanted is over.
-static bool is_hit(argus_t *const core, argus_given_t *const given) {
+static bool is_hit(const argus_t *const core, argus_given_t *const given) {
     const uint16_t pressed = argus_built_bumpers(&core->knowledge);
     const bool fresh = (pressed & ~(unsigned)given->bumpers) != 0;
     given->bumpers = pressed;
@@ -500,28 +498,28 @@ static void heed(const argus_t *const core, argus_hold_client_t *const self) {
         self->turn_due;
 }
 
-void argus_hold_watch(argus_t *const core, argus_hold_client_t *const self) {
-    const bool stalled = is_stalled(core, &self->given);
-    if (is_hit(core, &self->given)) {
-        argus_outbox_urgent(outbox(core), ARCOS_CMD_E_STOP);
+void argus_hold_watch(const argus_grant_t *const grant, argus_hold_client_t *const self) {
+    const bool stalled = is_stalled(grant->core, &self->given);
+    if (is_hit(grant->core, &self->given)) {
+        argus_outbox_urgent(grant->out, ARCOS_CMD_E_STOP);
         argus_hold_forget(self);
-        argus_say(core, ARGUS_EV_GUARD_HELD, ARGUS_NO_SONAR, (int32_t)ARGUS_BOUND_BUMPER);
+        argus_emit(grant->events, ARGUS_EV_GUARD_HELD, (int32_t)ARGUS_BOUND_BUMPER);
         return;
     }
     if (stalled) {
-        argus_outbox_urgent(outbox(core), ARCOS_CMD_STOP);
+        argus_outbox_urgent(grant->out, ARCOS_CMD_STOP);
         argus_hold_forget(self);
         return;
     }
-    tell_free(core, &self->given);
-    heed(core, self);
-    give(core, self, true, false);
-    if (should_weave(core, &self->wish)) {
-        weave(core, &self->given);
+    tell_free(grant, &self->given);
+    heed(grant->core, self);
+    give(grant, self, true, false);
+    if (should_weave(grant->core, &self->wish)) {
+        weave(grant, &self->given);
     } else {
-        end_weaving(core, self);
+        end_weaving(grant, self);
         if (!self->wish.paired) {
-            give(core, self, false, false);
+            give(grant, self, false, false);
         }
     }
 }

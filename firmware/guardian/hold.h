@@ -8,6 +8,16 @@
 #include "guardian/wish.h"
 #include "supervisor/core.h"
 
+// What a guard port has of the manager: it reads all, and writes what goes out, the speed of the set-up while
+// the client has the robot, and where the robot counts from.
+typedef struct {
+    const argus_t *core;
+    argus_outbox_t *out;
+    argus_events_t *events;
+    argus_motion_t *motion;
+    argus_knowledge_t *knowledge;
+} argus_grant_t;
+
 // What the robot was ordered last, and what was said of it.
 typedef struct {
     int32_t mm_s; // VEL, or the way of VEL2
@@ -49,16 +59,16 @@ typedef struct {
 void argus_hold_forget(argus_hold_client_t *self);
 
 // After a command about the way, or both the way and the turn; about the turn: passed on as far as it may be.
-void argus_hold_way(argus_t *core, argus_hold_client_t *self);
-void argus_hold_turn(argus_t *core, argus_hold_client_t *self);
+void argus_hold_way(const argus_grant_t *grant, argus_hold_client_t *self);
+void argus_hold_turn(const argus_grant_t *grant, argus_hold_client_t *self);
 
 // STOP at once. What is wanted is given again when it may be.
-void argus_hold_still(argus_t *core, argus_hold_client_t *self);
+void argus_hold_still(const argus_grant_t *grant, argus_hold_client_t *self);
 
 // Once for each time that it is held: what it asks for it may not have at all now.
-void argus_hold_tell(argus_t *core, argus_hold_client_t *self, argus_permit_t permit);
+void argus_hold_tell(const argus_grant_t *grant, argus_hold_client_t *self, argus_permit_t permit);
 
 // After each SIP, and when an operator stops the robot: what was given is taken back or given again.
-void argus_hold_watch(argus_t *core, argus_hold_client_t *self);
+void argus_hold_watch(const argus_grant_t *grant, argus_hold_client_t *self);
 
 #endif

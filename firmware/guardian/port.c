@@ -8,7 +8,6 @@
 #include "guardian/send.h"
 #include "knowledge/angle.h"
 #include "supervisor/orders.h"
-#include "supervisor/say.h"
 
 #define WATCHDOG_MS 2000u // where CONFIGpac has not come
 #define ALL_ARRAYS 0x0Fu
@@ -29,33 +28,33 @@ static uint32_t watchdog_ms(const argus_t *const core) {
 // The client goes -------------------------------------------------------------------------------------------
 
 // What it had the robot send beside the SIPs, and how it had it move, ends with it.
-static void give_back(argus_t *const core, argus_port_t *const self) {
-    argus_send_streams_off(core, self->streams);
+static void give_back(const argus_grant_t *const grant, argus_port_t *const self) {
+    argus_send_streams_off(grant, self->streams);
     self->streams = 0;
     if (self->drives) {
-        argus_outbox_urgent(&core->session.outbox, ARCOS_CMD_STOP);
-        argus_send_own_settings(core);
+        argus_outbox_urgent(grant->out, ARCOS_CMD_STOP);
+        argus_send_own_settings(grant);
         self->parting = true;
-        self->parted_ms = core->now_ms;
+        self->parted_ms = grant->core->now_ms;
     }
     self->drives = false;
     self->motors = ARGUS_PORT_MOTORS_AS_THEY_ARE;
     argus_hold_forget(&self->hold);
 }
 
-static void close_session(argus_t *const core, argus_port_t *const self) {
+static void close_session(const argus_grant_t *const grant, argus_port_t *const self) {
     if (self->phase == ARGUS_PORT_OPEN) {
-        argus_say(core, ARGUS_EV_GUARD_CLOSED, ARGUS_NO_SONAR, (int32_t)(self->packets & 0x7FFFFFFFu));
-        give_back(core, self);
+        argus_emit(grant->events, ARGUS_EV_GUARD_CLOSED, (int32_t)(self->packets & 0x7FFFFFFFu));
+        give_back(grant, self);
     }
     self->phase = ARGUS_PORT_WAIT;
 }
 
 // Without a word.
-static void lose(argus_t *const core, argus_port_t *const self, const int32_t why) {
+static void lose(const argus_grant_t *const grant, argus_port_t *const self, const int32_t why) {
     if (self->phase == ARGUS_PORT_OPEN) {
-        argus_say(core, ARGUS_EV_GUARD_LOST, ARGUS_NO_SONAR, why);
-        give_back(core, self);
+        argus_emit(grant->events, ARGUS_EV_GUARD_LOST, why);
+        give_back(grant, self);
     }
     self->phase = ARGUS_PORT_WAIT;
     if (why != PARTED_SILENT) {
@@ -65,41 +64,42 @@ static void lose(argus_t *const core, argus_port_t *const self, const int32_t wh
 }
 
 // As at the end of a robot's own session, the motors go off; not if the manager drives by now.
-static void part(argus_t *const core, argus_port_t *const self) {
-    const bool due = argus_at_rest(&core->knowledge) || core->now_ms - self->parted_ms >= PART_MS;
-    if (!core->orders.passive || self->drives) {
+static void part(const argus_grant_t *const grant, argus_port_t *const self) {
+    const bool due =
+        argus_at_rest(&grant->core->knowledge) || grant->core->now_ms - self->parted_ms >= PART_MS;
+    if (!grant->core->orders.passive || self->drives) {
         self->parting = false;
     } else if (due) {
-        self->parting = !argus_outbox_int(&core->session.outbox, ARCOS_CMD_ENABLE, 0);
+        self->parting = !argus_outbox_int(grant->out, ARCOS_CMD_ENABLE, 0);
     }
 }
 
 // What ends here --------------------------------------------------------------------------------------------
 
-static void refuse(argus_t *const core, argus_port_t *const self, const uint8_t command) {
+static void refuse(const argus_grant_t *const grant, argus_port_t *const self, const uint8_t command) {
     self->refused++;
     if (argus_limit_word(&self->limit)) {
-        argus_say(core, ARGUS_EV_GUARD_REFUSED, ARGUS_NO_SONAR, command);
+        argus_emit(grant->events, ARGUS_EV_GUARD_REFUSED, command);
     }
 }
 
 // How many were dropped, so that a flood is seen though not every command of it is.
-static void tell_dropped(argus_t *const core, argus_port_t *const self) {
-    const uint32_t dropped = argus_limit_second(&self->limit, core->now_ms);
+static void tell_dropped(const argus_grant_t *const grant, argus_port_t *const self) {
+    const uint32_t dropped = argus_limit_second(&self->limit, grant->core->now_ms);
     if (dropped > 0) {
-        argus_say(core, ARGUS_EV_GUARD_DROPPED, ARGUS_NO_SONAR, (int32_t)(dropped & 0x7FFFFFFFu));
+        argus_emit(grant->events, ARGUS_EV_GUARD_DROPPED, (int32_t)(dropped & 0x7FFFFFFFu));
     }
 }
 
-static bool pass(argus_t *const core, argus_port_t *const self, const argus_said_t *const said) {
-    const bool passed = argus_send_robot(core, said->packet);
+static bool pass(const argus_grant_t *const grant, argus_port_t *const self, const argus_said_t *const said) {
+    const bool passed = argus_send_robot(grant, said->packet);
     self->refused += passed ? 0 : 1;
     self->limit.dropped += passed ? 0 : 1;
     return passed;
 }
 
-static bool may_pass(argus_t *const core, argus_port_t *const self, const uint16_t cost) {
-    if (argus_limit_pass(&self->limit, core->now_ms, cost)) {
+static bool may_pass(const argus_grant_t *const grant, argus_port_t *const self, const uint16_t cost) {
+    if (argus_limit_pass(&self->limit, grant->core->now_ms, cost)) {
         return true;
     }
     self->refused++;
@@ -108,7 +108,7 @@ static bool may_pass(argus_t *const core, argus_port_t *const self, const uint16
 
 // The client comes ------------------------------------------------------------------------------------------
 
-static void open_session(argus_t *const core, argus_port_t *const self) {
+static void open_session(const argus_grant_t *const grant, argus_port_t *const self) {
     self->phase = ARGUS_PORT_OPEN;
     self->arrays = ALL_ARRAYS;
     self->packets = 0;
@@ -116,7 +116,7 @@ static void open_session(argus_t *const core, argus_port_t *const self) {
     self->parting = false;
     memset(&self->settings, 0, sizeof self->settings);
     argus_hold_forget(&self->hold);
-    argus_say(core, ARGUS_EV_GUARD_OPEN, ARGUS_NO_SONAR, 0);
+    argus_emit(grant->events, ARGUS_EV_GUARD_OPEN, 0);
 }
 
 static void answer_identity(const argus_t *const core, argus_port_t *const self) {
@@ -134,17 +134,18 @@ static void answer_identity(const argus_t *const core, argus_port_t *const self)
 }
 
 // The next SYNC or the same again; SYNC0 always begins anew, any other out of its order does, too.
-static void take_sync(argus_t *const core, argus_port_t *const self, const argus_packet_t *const packet) {
+static void take_sync(const argus_grant_t *const grant, argus_port_t *const self,
+                      const argus_packet_t *const packet) {
     const uint8_t sync = packet->data[0];
     if (sync == ARCOS_CMD_OPEN && self->phase == ARGUS_PORT_SYNC2) {
-        if (may_pass(core, self, SESSION_BYTES)) {
-            open_session(core, self);
+        if (may_pass(grant, self, SESSION_BYTES)) {
+            open_session(grant, self);
         }
     } else if (sync <= ARCOS_SYNC_SYNC2 &&
                (sync == ARCOS_SYNC_SYNC0 || sync == self->phase || sync + 1 == self->phase)) {
         self->phase = (uint8_t)(ARGUS_PORT_SYNC0 + sync);
         if (sync == ARCOS_SYNC_SYNC2) {
-            answer_identity(core, self);
+            answer_identity(grant->core, self);
         } else {
             argus_send_client(self, packet->data, 1);
         }
@@ -155,21 +156,18 @@ static void take_sync(argus_t *const core, argus_port_t *const self, const argus
 
 // Its commands ----------------------------------------------------------------------------------------------
 
-// The first motion that it asks for ends the manager's own course; true: it may.
-static bool take_wheel(argus_t *const core, argus_port_t *const self) {
+// The first motion that it asks for; true: it may.
+static bool take_wheel(const argus_grant_t *const grant, argus_port_t *const self) {
     if (self->drives) {
         return true;
     }
     if (self->denied) {
         return false;
     }
-    if (!core->orders.passive) {
-        argus_yield_to_client(core);
-    }
     self->drives = true;
     self->parting = false;
-    argus_say(core, ARGUS_EV_GUARD_DRIVES, ARGUS_NO_SONAR, 0);
-    argus_send_settings(core, &self->settings);
+    argus_emit(grant->events, ARGUS_EV_GUARD_DRIVES, 0);
+    argus_send_settings(grant, &self->settings);
     self->hold.setv_mm_s = self->settings.setv_mm_s;
     self->hold.given.setv_mm_s = self->settings.setv_mm_s;
     return true;
@@ -182,49 +180,53 @@ static int32_t raw_deg(const argus_knowledge_t *const knowledge) {
 }
 
 // More of them than the robot's line carries: the last ones go out with the next SIP.
-static void take_motion(argus_t *const core, argus_port_t *const self, const argus_said_t *const said) {
+static void take_motion(const argus_grant_t *const grant, argus_port_t *const self,
+                        const argus_said_t *const said) {
     if (!self->drives && !argus_wish_moves(said)) {
         return; // it stands as far as the client is concerned
     }
-    if (!take_wheel(core, self)) {
-        refuse(core, self, said->command);
+    if (!take_wheel(grant, self)) {
+        refuse(grant, self, said->command);
         return;
     }
     const bool turns = said->topic == ARGUS_TOPIC_TURN;
     self->stopped = 0;
-    argus_wish_take(&self->hold.wish, said, core->knowledge.odometer_mm, raw_deg(&core->knowledge));
+    argus_wish_take(&self->hold.wish, said, grant->core->knowledge.odometer_mm,
+                    raw_deg(&grant->core->knowledge));
     if (!argus_limit_order(&self->limit)) {
         *(turns ? &self->hold.turn_due : &self->hold.way_due) = true;
     } else if (turns) {
-        argus_hold_turn(core, &self->hold);
+        argus_hold_turn(grant, &self->hold);
     } else {
-        argus_hold_way(core, &self->hold);
+        argus_hold_way(grant, &self->hold);
     }
 }
 
+static uint8_t stop_of(const argus_said_t *const said) {
+    return said->command == ARCOS_CMD_STOP ? ARCOS_CMD_STOP : ARCOS_CMD_E_STOP;
+}
+
 // The same again while nothing was ordered since, and no SIP has come, is once.
-static void take_stop(argus_t *const core, argus_port_t *const self, const argus_said_t *const said) {
-    const uint8_t command = said->command == ARCOS_CMD_STOP ? ARCOS_CMD_STOP : ARCOS_CMD_E_STOP;
+static void take_stop(const argus_grant_t *const grant, argus_port_t *const self,
+                      const argus_said_t *const said) {
+    const uint8_t command = stop_of(said);
     argus_hold_forget(&self->hold);
     if (self->stopped == command) {
         return;
     }
     self->stopped = command;
-    if (!core->orders.passive) {
-        argus_stop_for_client(core); // any client that sees that it must stand is heard
-    }
-    argus_outbox_urgent(&core->session.outbox, command);
+    argus_outbox_urgent(grant->out, command);
 }
 
 // Motors on are held and given again as a motion is. Where they go off nothing is wanted of the wheels, and a
 // robot that keeps its set points has none when they are on again.
-static void give_motors(argus_t *const core, argus_port_t *const self) {
-    argus_outbox_t *const out = &core->session.outbox;
+static void give_motors(const argus_grant_t *const grant, argus_port_t *const self) {
+    argus_outbox_t *const out = grant->out;
     const argus_ask_t ask = {.mover = ARGUS_MOVER_CLIENT, .wants = ARGUS_WANTS_MOTORS};
-    const argus_permit_t permit = argus_permit(core, ask);
+    const argus_permit_t permit = argus_permit(grant->core, ask);
     const bool on = self->motors == ARGUS_PORT_MOTORS_ON;
     if (on && permit != ARGUS_PERMIT_GIVEN) {
-        argus_hold_tell(core, &self->hold, permit);
+        argus_hold_tell(grant, &self->hold, permit);
     } else if (self->motors != ARGUS_PORT_MOTORS_AS_THEY_ARE &&
                argus_outbox_int(out, ARCOS_CMD_ENABLE, on ? 1 : 0) &&
                (on || argus_outbox_plain(out, ARCOS_CMD_STOP))) {
@@ -232,13 +234,14 @@ static void give_motors(argus_t *const core, argus_port_t *const self) {
     }
 }
 
-static void take_enable(argus_t *const core, argus_port_t *const self, const argus_said_t *const said) {
+static void take_enable(const argus_grant_t *const grant, argus_port_t *const self,
+                        const argus_said_t *const said) {
     const bool on = said->argument != 0;
     if (!on && !self->drives) {
         return;
     }
-    if (!take_wheel(core, self)) {
-        refuse(core, self, said->command);
+    if (!take_wheel(grant, self)) {
+        refuse(grant, self, said->command);
         return;
     }
     self->stopped = 0;
@@ -247,33 +250,35 @@ static void take_enable(argus_t *const core, argus_port_t *const self, const arg
         argus_hold_forget(&self->hold);
     }
     if (argus_limit_order(&self->limit)) {
-        give_motors(core, self);
+        give_motors(grant, self);
     } else if (!on) {
-        argus_hold_still(core, &self->hold);
+        argus_hold_still(grant, &self->hold);
     }
 }
 
-static void take_setting(argus_t *const core, argus_port_t *const self, const argus_said_t *const said) {
-    const int32_t passed = argus_send_limited(core, said->command, said->argument);
+static void take_setting(const argus_grant_t *const grant, argus_port_t *const self,
+                         const argus_said_t *const said) {
+    const int32_t passed = argus_send_limited(grant->core, said->command, said->argument);
     if (passed != said->argument) {
-        argus_say(core, ARGUS_EV_GUARD_LIMITED, ARGUS_NO_SONAR, passed);
+        argus_emit(grant->events, ARGUS_EV_GUARD_LIMITED, passed);
     }
     argus_send_note(&self->settings, said->command, passed);
     if (self->drives) {
-        argus_outbox_int(&core->session.outbox, said->command, passed);
+        argus_outbox_int(grant->out, said->command, passed);
         self->hold.setv_mm_s = self->settings.setv_mm_s;
         self->hold.given.setv_mm_s =
             said->command == ARCOS_CMD_SETV ? self->settings.setv_mm_s : self->hold.given.setv_mm_s;
     }
 }
 
-static void take_origin(argus_t *const core, argus_port_t *const self, const argus_said_t *const said) {
-    if (!core->orders.passive) {
-        refuse(core, self, said->command); // the manager steers by it
+static void take_origin(const argus_grant_t *const grant, argus_port_t *const self,
+                        const argus_said_t *const said) {
+    if (!grant->core->orders.passive) {
+        refuse(grant, self, said->command); // the manager steers by it
         return;
     }
-    if (pass(core, self, said)) {
-        argus_knowledge_origin_due(&core->knowledge);
+    if (pass(grant, self, said)) {
+        argus_knowledge_origin_due(grant->knowledge);
         self->origin = true;
         self->origin_sips = 0;
         self->hold.wish.heading_taken = false;
@@ -294,46 +299,48 @@ static void take_analog(argus_port_t *const self, const int32_t argument) {
     }
 }
 
-static void take_rest(argus_t *const core, argus_port_t *const self, const argus_said_t *const said) {
+static void take_rest(const argus_grant_t *const grant, argus_port_t *const self,
+                      const argus_said_t *const said) {
     switch ((argus_topic_t)said->topic) {
     case ARGUS_TOPIC_SETTING:
-        take_setting(core, self, said);
+        take_setting(grant, self, said);
         break;
     case ARGUS_TOPIC_ORIGIN:
-        take_origin(core, self, said);
+        take_origin(grant, self, said);
         break;
     case ARGUS_TOPIC_STREAM:
-        self->streams |= pass(core, self, said) ? argus_send_stream(said->command, said->argument) : 0;
+        self->streams |= pass(grant, self, said) ? argus_send_stream(said->command, said->argument) : 0;
         break;
     case ARGUS_TOPIC_PASSED:
-        pass(core, self, said);
+        pass(grant, self, said);
         break;
     default:
         break;
     }
 }
 
-static void take_session(argus_t *const core, argus_port_t *const self, const uint8_t command) {
+static void take_session(const argus_grant_t *const grant, argus_port_t *const self, const uint8_t command) {
     if (command == ARCOS_CMD_CLOSE || command == ARCOS_CMD_RESET) {
-        close_session(core, self);
+        close_session(grant, self);
     }
 }
 
-static void take_command(argus_t *const core, argus_port_t *const self, const argus_said_t *const said) {
+static void take_command(const argus_grant_t *const grant, argus_port_t *const self,
+                         const argus_said_t *const said) {
     switch ((argus_topic_t)said->topic) {
     case ARGUS_TOPIC_SESSION:
-        take_session(core, self, said->command);
+        take_session(grant, self, said->command);
         break;
     case ARGUS_TOPIC_WAY:
     case ARGUS_TOPIC_TURN:
     case ARGUS_TOPIC_BOTH:
-        take_motion(core, self, said);
+        take_motion(grant, self, said);
         break;
     case ARGUS_TOPIC_STOP:
-        take_stop(core, self, said);
+        take_stop(grant, self, said);
         break;
     case ARGUS_TOPIC_ENABLE:
-        take_enable(core, self, said);
+        take_enable(grant, self, said);
         break;
     case ARGUS_TOPIC_SONAR:
         take_sonar(self, said->argument);
@@ -342,20 +349,41 @@ static void take_command(argus_t *const core, argus_port_t *const self, const ar
         take_analog(self, said->argument);
         break;
     default:
-        if (may_pass(core, self, said->cost)) {
-            take_rest(core, self, said);
+        if (may_pass(grant, self, said->cost)) {
+            take_rest(grant, self, said);
         }
         break;
     }
 }
 
-static void take_packet(argus_t *const core, argus_port_t *const self, const argus_packet_t *const packet) {
+static bool asks_for_wheels(const argus_said_t *const said) {
+    const bool moves =
+        said->topic == ARGUS_TOPIC_WAY || said->topic == ARGUS_TOPIC_TURN || said->topic == ARGUS_TOPIC_BOTH;
+    return moves ? argus_wish_moves(said) : said->topic == ARGUS_TOPIC_ENABLE && said->argument != 0;
+}
+
+// The first motion that a client asks for ends the manager's own course. Any client that sees that the robot
+// must stand is heard.
+static void clear_way(argus_t *const core, const argus_port_t *const self, const argus_said_t *const said) {
+    if (core->orders.passive) {
+        return;
+    }
+    if (said->topic == ARGUS_TOPIC_STOP && self->stopped != stop_of(said)) {
+        argus_stop_for_client(core);
+    } else if (!self->drives && !self->denied && asks_for_wheels(said)) {
+        argus_yield_to_client(core);
+    }
+}
+
+static void take_packet(argus_t *const core, const argus_grant_t *const grant, argus_port_t *const self,
+                        const argus_packet_t *const packet) {
     argus_said_t said;
     self->packets++;
     if (argus_admit(packet, &said)) {
-        take_command(core, self, &said);
+        clear_way(core, self, &said);
+        take_command(grant, self, &said);
     } else {
-        refuse(core, self, said.command);
+        refuse(grant, self, said.command);
     }
 }
 
@@ -363,24 +391,26 @@ static bool is_robot_there(const argus_t *const core) {
     return argus_session_is_open(&core->session) && !core->orders.shutdown;
 }
 
-static void take_client(argus_t *const core, argus_port_t *const self, const argus_packet_t *const packet) {
+static void take_client(argus_t *const core, const argus_grant_t *const grant, argus_port_t *const self,
+                        const argus_packet_t *const packet) {
     self->heard_ms = core->now_ms;
     if (!is_robot_there(core)) {
         return; // as a robot without power
     }
     if (self->phase == ARGUS_PORT_OPEN) {
-        take_packet(core, self, packet);
+        take_packet(core, grant, self, packet);
     } else {
-        take_sync(core, self, packet);
+        take_sync(grant, self, packet);
     }
 }
 
-static void hear_client(argus_t *const core, argus_port_t *const self, const argus_port_io_t *const io) {
+static void hear_client(argus_t *const core, const argus_grant_t *const grant, argus_port_t *const self,
+                        const argus_port_io_t *const io) {
     argus_packet_t packet;
     size_t taken = 0;
     for (;;) {
         while (argus_parser_next(&self->from_client, core->now_ms, &packet)) {
-            take_client(core, self, &packet);
+            take_client(core, grant, self, &packet);
         }
         if (taken >= io->client_count) {
             return;
@@ -400,37 +430,37 @@ static bool is_sip(const uint8_t type) {
     return type == ARCOS_TYPE_SIP_STATIONARY || type == ARCOS_TYPE_SIP_MOVING;
 }
 
-static void pass_sip(argus_t *const core, argus_port_t *const self, const argus_packet_t *const packet,
-                     const argus_readings_t readings) {
+static void pass_sip(const argus_grant_t *const grant, argus_port_t *const self,
+                     const argus_packet_t *const packet, const argus_readings_t readings) {
     uint8_t data[ARCOS_FRAME_COUNT_MAX];
     const argus_rewrite_t how = {.readings = readings, .arrays = self->arrays, .analog = &self->analog};
-    const size_t count = argus_rewrite_sip(core, &how, packet->data, packet->count, data);
+    const size_t count = argus_rewrite_sip(grant->core, &how, packet->data, packet->count, data);
     if (count > 0 && argus_send_client(self, data, count)) {
         self->sips++;
     }
 }
 
-static void count_origin(argus_t *const core, argus_port_t *const self) {
+static void count_origin(const argus_grant_t *const grant, argus_port_t *const self) {
     self->origin_sips++;
     if (self->origin && self->origin_sips > ORIGIN_SIPS) {
-        core->knowledge.origin_due = false;
+        grant->knowledge->origin_due = false;
         self->origin = false;
     }
 }
 
 // An operator has made the manager active: the robot is its own again.
-static void yield(argus_t *const core, argus_port_t *const self) {
-    if (self->drives && !core->orders.passive) {
+static void yield(const argus_grant_t *const grant, argus_port_t *const self) {
+    if (self->drives && !grant->core->orders.passive) {
         self->drives = false;
         self->denied = true;
-        argus_outbox_urgent(&core->session.outbox, ARCOS_CMD_STOP);
+        argus_outbox_urgent(grant->out, ARCOS_CMD_STOP);
         argus_hold_forget(&self->hold);
-        argus_send_own_settings(core);
+        argus_send_own_settings(grant);
     }
 }
 
-static void take_robot(argus_t *const core, argus_port_t *const self, const argus_packet_t *const packet,
-                       const argus_readings_t readings) {
+static void take_robot(const argus_grant_t *const grant, argus_port_t *const self,
+                       const argus_packet_t *const packet, const argus_readings_t readings) {
     const uint8_t type = packet->data[0];
     if (is_sip(type)) {
         argus_rewrite_note_analog(&self->analog, packet->data, packet->count);
@@ -439,39 +469,40 @@ static void take_robot(argus_t *const core, argus_port_t *const self, const argu
         return;
     }
     if (is_sip(type)) {
-        pass_sip(core, self, packet, readings);
-        count_origin(core, self);
+        pass_sip(grant, self, packet, readings);
+        count_origin(grant, self);
     } else {
         argus_send_client(self, packet->data, packet->count);
     }
 }
 
-static bool hear_robot(argus_t *const core, argus_port_t *const self, const argus_port_io_t *const io) {
+static bool hear_robot(const argus_grant_t *const grant, argus_port_t *const self,
+                       const argus_port_io_t *const io) {
     argus_packet_t packet;
     size_t taken = 0;
     bool news = false;
     for (;;) {
-        while (argus_parser_next(&self->from_robot, core->now_ms, &packet)) {
+        while (argus_parser_next(&self->from_robot, grant->core->now_ms, &packet)) {
             news = news || is_sip(packet.data[0]);
-            take_robot(core, self, &packet, io->readings);
+            take_robot(grant, self, &packet, io->readings);
         }
         if (taken >= io->robot_count) {
             return news;
         }
-        taken +=
-            argus_parser_push(&self->from_robot, core->now_ms, io->robot + taken, io->robot_count - taken);
+        taken += argus_parser_push(&self->from_robot, grant->core->now_ms, io->robot + taken,
+                                   io->robot_count - taken);
     }
 }
 
 // One pass --------------------------------------------------------------------------------------------------
 
-static void watch_client(argus_t *const core, argus_port_t *const self, const bool there) {
+static void watch_client(const argus_grant_t *const grant, argus_port_t *const self, const bool there) {
     if (self->there && !there) {
-        lose(core, self, PARTED_CLOSED);
+        lose(grant, self, PARTED_CLOSED);
     }
     self->there = there;
-    if (self->phase == ARGUS_PORT_OPEN && !is_robot_there(core)) {
-        lose(core, self, PARTED_RESET);
+    if (self->phase == ARGUS_PORT_OPEN && !is_robot_there(grant->core)) {
+        lose(grant, self, PARTED_RESET);
     }
 }
 
@@ -480,44 +511,45 @@ static bool wants(const argus_hold_client_t *const hold) {
 }
 
 // A robot's own watchdog leaves the session open; so does this one.
-static void watch_silence(argus_t *const core, argus_port_t *const self) {
-    const bool silent = core->now_ms - self->heard_ms >= watchdog_ms(core);
+static void watch_silence(const argus_grant_t *const grant, argus_port_t *const self) {
+    const bool silent = grant->core->now_ms - self->heard_ms >= watchdog_ms(grant->core);
     if (self->phase == ARGUS_PORT_OPEN && self->drives && wants(&self->hold) && silent) {
-        argus_say(core, ARGUS_EV_GUARD_LOST, ARGUS_NO_SONAR, PARTED_SILENT);
-        argus_outbox_urgent(&core->session.outbox, ARCOS_CMD_STOP);
+        argus_emit(grant->events, ARGUS_EV_GUARD_LOST, PARTED_SILENT);
+        argus_outbox_urgent(grant->out, ARCOS_CMD_STOP);
         argus_hold_forget(&self->hold);
     }
 }
 
 // S2, with no SIP. When they come again the robot's own session sends VEL 0 and RVEL 0.
-static void stand(argus_t *const core, argus_port_t *const self) {
+static void stand(const argus_grant_t *const grant, argus_port_t *const self) {
     if (wants(&self->hold)) {
-        argus_outbox_urgent(&core->session.outbox, ARCOS_CMD_STOP);
+        argus_outbox_urgent(grant->out, ARCOS_CMD_STOP);
     }
     argus_hold_forget(&self->hold);
 }
 
-static void watch_driver(argus_t *const core, argus_port_t *const self, const bool stays, const bool news) {
-    if (core->stalled) {
-        stand(core, self);
+static void watch_driver(const argus_grant_t *const grant, argus_port_t *const self, const bool stays,
+                         const bool news) {
+    if (grant->core->stalled) {
+        stand(grant, self);
     } else if (stays) {
-        argus_hold_still(core, &self->hold);
-        argus_hold_watch(core, &self->hold);
+        argus_hold_still(grant, &self->hold);
+        argus_hold_watch(grant, &self->hold);
     } else if (news) {
-        argus_hold_watch(core, &self->hold);
-        give_motors(core, self);
+        argus_hold_watch(grant, &self->hold);
+        give_motors(grant, self);
     }
 }
 
-static void watch_motion(argus_t *const core, argus_port_t *const self, const bool news) {
-    const bool stays = core->orders.stay && !self->stayed;
-    self->stayed = core->orders.stay;
-    yield(core, self);
+static void watch_motion(const argus_grant_t *const grant, argus_port_t *const self, const bool news) {
+    const bool stays = grant->core->orders.stay && !self->stayed;
+    self->stayed = grant->core->orders.stay;
+    yield(grant, self);
     if (self->phase == ARGUS_PORT_OPEN && self->drives) {
-        watch_driver(core, self, stays, news);
+        watch_driver(grant, self, stays, news);
     }
     if (self->parting && news) {
-        part(core, self);
+        part(grant, self);
     }
 }
 
@@ -534,16 +566,22 @@ static size_t hand_out(argus_port_t *const self, const argus_port_io_t *const io
 size_t argus_guard_port(argus_t *const core, argus_port_storage_t *const storage, const uint32_t now_ms,
                         const argus_port_io_t *const io) {
     argus_port_t *const self = (argus_port_t *)storage;
-    core->now_ms = now_ms;
-    watch_client(core, self, io->there);
-    hear_client(core, self, io);
-    const bool news = hear_robot(core, self, io);
+    const argus_grant_t granted = {.core = core,
+                                   .out = &core->session.outbox,
+                                   .events = &core->events,
+                                   .motion = &core->motion,
+                                   .knowledge = &core->knowledge};
+    const argus_grant_t *const grant = &granted;
+    argus_set_now(core, now_ms);
+    watch_client(grant, self, io->there);
+    hear_client(core, grant, self, io);
+    const bool news = hear_robot(grant, self, io);
     if (news) {
         argus_limit_sip(&self->limit);
         self->stopped = 0;
     }
-    tell_dropped(core, self);
-    watch_silence(core, self);
-    watch_motion(core, self, news);
+    tell_dropped(grant, self);
+    watch_silence(grant, self);
+    watch_motion(grant, self, news);
     return hand_out(self, io);
 }

@@ -33,8 +33,8 @@ bool argus_send_client(argus_port_t *const port, const uint8_t *const data, cons
     return true;
 }
 
-bool argus_send_robot(argus_t *const core, const argus_packet_t *const packet) {
-    argus_outbox_t *const out = &core->session.outbox;
+bool argus_send_robot(const argus_grant_t *const grant, const argus_packet_t *const packet) {
+    argus_outbox_t *const out = grant->out;
     const size_t total = (size_t)ARCOS_FRAME_OVERHEAD + packet->count + 2;
     return out->length + total <= ROOM_BYTES && argus_outbox_packet(out, packet->data, packet->count);
 }
@@ -90,8 +90,8 @@ static void fill(int32_t *const value, const int32_t configured, const int32_t u
     }
 }
 
-static void send_all(argus_t *const core, const argus_port_settings_t *const settings) {
-    argus_outbox_t *const out = &core->session.outbox;
+static void send_all(const argus_grant_t *const grant, const argus_port_settings_t *const settings) {
+    argus_outbox_t *const out = grant->out;
     argus_outbox_int(out, ARCOS_CMD_SETV, settings->setv_mm_s);
     argus_outbox_int(out, ARCOS_CMD_SETA, settings->accel_mm_s2);
     argus_outbox_int(out, ARCOS_CMD_SETA, -settings->decel_mm_s2);
@@ -100,29 +100,29 @@ static void send_all(argus_t *const core, const argus_port_settings_t *const set
     argus_outbox_int(out, ARCOS_CMD_SETRA, -settings->turn_decel_deg_s2);
 }
 
-void argus_send_settings(argus_t *const core, argus_port_settings_t *const settings) {
-    const argus_configpac_t *const robot = &core->session.robot; // zero until it has come
+void argus_send_settings(const argus_grant_t *const grant, argus_port_settings_t *const settings) {
+    const argus_configpac_t *const robot = &grant->core->session.robot; // zero until it has come
     fill(&settings->setv_mm_s, robot->vel_max_mm_s, SETV_MM_S);
     fill(&settings->accel_mm_s2, robot->accel_mm_s2, ACCEL_MM_S2);
     fill(&settings->decel_mm_s2, robot->decel_mm_s2, ACCEL_MM_S2);
     fill(&settings->setrv_deg_s, robot->rotvel_max_deg_s, SETRV_DEG_S);
     fill(&settings->turn_accel_deg_s2, 0, TURN_ACCEL_DEG_S2);
     fill(&settings->turn_decel_deg_s2, 0, TURN_ACCEL_DEG_S2);
-    settings->decel_mm_s2 = -argus_send_limited(core, ARCOS_CMD_SETA, -settings->decel_mm_s2);
-    settings->setrv_deg_s = argus_send_limited(core, ARCOS_CMD_SETRV, settings->setrv_deg_s);
-    send_all(core, settings);
+    settings->decel_mm_s2 = -argus_send_limited(grant->core, ARCOS_CMD_SETA, -settings->decel_mm_s2);
+    settings->setrv_deg_s = argus_send_limited(grant->core, ARCOS_CMD_SETRV, settings->setrv_deg_s);
+    send_all(grant, settings);
 }
 
-void argus_send_own_settings(argus_t *const core) {
-    const argus_config_t *const config = &core->config;
+void argus_send_own_settings(const argus_grant_t *const grant) {
+    const argus_config_t *const config = &grant->core->config;
     const argus_port_settings_t own = {.setv_mm_s = config->speed_mm_s,
                                        .accel_mm_s2 = config->accel_mm_s2,
                                        .decel_mm_s2 = config->decel_mm_s2,
                                        .setrv_deg_s = config->turn_speed_deg_s,
                                        .turn_accel_deg_s2 = config->turn_accel_deg_s2,
                                        .turn_decel_deg_s2 = config->turn_accel_deg_s2};
-    send_all(core, &own);
-    core->motion.speed_mm_s = config->speed_mm_s;
+    send_all(grant, &own);
+    grant->motion->speed_mm_s = config->speed_mm_s;
 }
 
 uint8_t argus_send_stream(const uint8_t command, const int32_t argument) {
@@ -134,10 +134,10 @@ uint8_t argus_send_stream(const uint8_t command, const int32_t argument) {
     return 0;
 }
 
-void argus_send_streams_off(argus_t *const core, const uint8_t streams) {
+void argus_send_streams_off(const argus_grant_t *const grant, const uint8_t streams) {
     for (size_t i = 0; i < sizeof streams_of; i++) {
         if ((streams >> i & 1u) != 0) {
-            argus_outbox_int(&core->session.outbox, streams_of[i], 0);
+            argus_outbox_int(grant->out, streams_of[i], 0);
         }
     }
 }

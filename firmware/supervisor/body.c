@@ -7,7 +7,6 @@
 #include "knowledge/config.h"
 #include "supervisor/faults.h"
 #include "supervisor/journey.h"
-#include "supervisor/say.h"
 #include "supervisor/state.h"
 
 #define STRANGE_SIPS 5 // one SIP may say anything
@@ -22,12 +21,6 @@ static const argus_robot_t *robot_met(const argus_t *const self) {
     return chosen != NULL ? chosen : argus_robot_find(self->session.subclass);
 }
 
-static void say_beyond(argus_t *const self, const argus_robot_t *const robot) {
-    if (robot->sonars > ARGUS_SONARS) {
-        argus_tell(self, ARGUS_EV_SONARS_BEYOND, robot->sonars);
-    }
-}
-
 // How many sonars a robot of this subclass has, where the ring has more: that is of another one. Else 0.
 static int short_of(const char *const subclass, const argus_robot_t *const ring) {
     const argus_robot_t *const said = argus_robot_find(subclass);
@@ -35,15 +28,14 @@ static int short_of(const char *const subclass, const argus_robot_t *const ring)
 }
 
 // What was found out about the sonars of another body says nothing of this one's, but what its record says.
-static void forget_sonars(argus_t *const self) {
-    ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
-    for (int i = 0; i < self->knowledge.sonars; i++) {
-        if ((self->history.recorded >> i & 1u) == 0 &&
-            argus_health_may(&self->knowledge, i, ARGUS_CHANGE_FORGOTTEN)) {
-            argus_say_change(self, i, ARGUS_CHANGE_FORGOTTEN, ARGUS_KIND_NONE, 0);
+static void forget_sonars(argus_knowledge_t *const knowledge, argus_events_t *const events,
+                          const argus_mask_t recorded) {
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
+    for (int i = 0; i < knowledge->sonars; i++) {
+        if ((recorded >> i & 1u) == 0 && argus_health_may(knowledge, i, ARGUS_CHANGE_FORGOTTEN)) {
+            argus_emit_change(events, knowledge, i, ARGUS_CHANGE_FORGOTTEN, ARGUS_KIND_NONE, 0);
         }
     }
-    argus_algorithm1_init(&self->algorithm1);
 }
 
 static void change_to(argus_t *const self, const argus_robot_t *const robot) {
@@ -57,24 +49,25 @@ static void change_to(argus_t *const self, const argus_robot_t *const robot) {
     }
     argus_body_is(&self->knowledge, robot, self->now_ms);
     argus_config_follow(&self->config, self->follows, robot);
-    forget_sonars(self);
+    forget_sonars(&self->knowledge, &self->events, self->history.recorded);
+    argus_algorithm1_init(&self->algorithm1);
     argus_journey_restart(&self->travel);
     self->plan = argus_plan(robot, argus_policy(self), 0, 0);
     argus_replan(self);
 }
 
-bool argus_say_barred(argus_t *const self) {
-    self->orders.bar = self->orders.locked ? ARGUS_BAR_UNSAFE : ARGUS_BAR_NONE;
+bool argus_find_bar(const argus_t *const self, argus_orders_t *const orders, argus_events_t *const events) {
+    orders->bar = orders->locked ? ARGUS_BAR_UNSAFE : ARGUS_BAR_NONE;
     if (!argus_robot_is_known(self->knowledge.robot)) {
-        self->orders.bar = ARGUS_BAR_UNKNOWN;
-        argus_tell(self, ARGUS_EV_SUBCLASS_UNKNOWN, 0);
+        orders->bar = ARGUS_BAR_UNKNOWN;
+        argus_emit(events, ARGUS_EV_SUBCLASS_UNKNOWN, 0);
         return true;
     }
     const argus_config_report_t report = argus_config_check_for(&self->config, self->knowledge.robot);
     if (report.fault != ARGUS_CONFIG_OK) {
-        self->orders.bar = ARGUS_BAR_UNSAFE;
+        orders->bar = ARGUS_BAR_UNSAFE;
         const bool driving = report.fault == ARGUS_CONFIG_DRIVING;
-        argus_tell(self, ARGUS_EV_ROBOT_UNSAFE, driving ? report.driving_mm : report.stepping_mm);
+        argus_emit(events, ARGUS_EV_ROBOT_UNSAFE, driving ? report.driving_mm : report.stepping_mm);
     }
     return report.fault != ARGUS_CONFIG_OK;
 }
@@ -85,27 +78,30 @@ void argus_meet_body(argus_t *const self) {
     const argus_robot_t *const met = robot_met(self);
     const argus_robot_t *const robot = met != NULL ? met : argus_robot_unknown();
     const bool active = !self->orders.passive || self->orders.barred;
-    say_beyond(self, robot);
+    if (robot->sonars > ARGUS_SONARS) {
+        argus_emit(&self->events, ARGUS_EV_SONARS_BEYOND, robot->sonars);
+    }
     change_to(self, robot);
-    self->orders.barred = argus_say_barred(self) && active;
+    self->orders.barred = argus_find_bar(self, &self->orders, &self->events) && active;
     if (self->orders.bar == ARGUS_BAR_NONE && short_of(self->session.subclass, robot) > 0) {
         self->orders.bar = ARGUS_BAR_SONARS;
         self->orders.barred = active;
-        argus_tell(self, ARGUS_EV_SONARS_BEYOND, short_of(self->session.subclass, robot));
+        argus_emit(&self->events, ARGUS_EV_SONARS_BEYOND, short_of(self->session.subclass, robot));
     }
     self->orders.passive = self->orders.locked || self->orders.barred || !active;
     ARGUS_ASSERT(!self->orders.barred || self->orders.passive);
 }
 
-bool argus_sees_through_body(argus_t *const self) {
+bool argus_sees_through_body(const argus_t *const self, argus_orders_t *const orders,
+                             argus_events_t *const events) {
     const argus_robot_t *const robot = self->knowledge.robot;
     if (self->knowledge.strange_sips != STRANGE_SIPS || !argus_robot_is_known(robot)) {
         return false;
     }
-    argus_tell(self, ARGUS_EV_SONARS_BEYOND, robot->sonars);
+    argus_emit(events, ARGUS_EV_SONARS_BEYOND, robot->sonars);
     if (robot->sonars < ARGUS_SONARS) {
-        self->orders.passive = true;
-        self->orders.bar = ARGUS_BAR_SONARS;
+        orders->passive = true;
+        orders->bar = ARGUS_BAR_SONARS;
     }
-    return self->orders.passive;
+    return orders->passive;
 }

@@ -11,9 +11,9 @@ void argus_meet_body(argus_t *self);
 
 // Tells, once, of a robot that lists sonars which its subclass has not got. Where those are of the sixteen
 // it has another body, and is passive until an operator says otherwise. True: it may not be driven.
-bool argus_sees_through_body(argus_t *self);
+bool argus_sees_through_body(const argus_t *self, argus_orders_t *orders, argus_events_t *events);
 
 // Says why the robot at hand may not be driven; false: it may.
-bool argus_say_barred(argus_t *self);
+bool argus_find_bar(const argus_t *self, argus_orders_t *orders, argus_events_t *events);
 
 #endif

@@ -5,15 +5,14 @@
 #include "knowledge/angle.h"
 #include "supervisor/faults.h"
 #include "supervisor/looks.h"
-#include "supervisor/say.h"
 #include "supervisor/state.h"
 
-static void declare_healthy(argus_t *const self) {
-    ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
-    for (int i = 0; i < self->knowledge.sonars; i++) {
-        const argus_sonar_t *const s = &self->knowledge.sonar[i];
+static void declare_healthy(argus_knowledge_t *const knowledge, argus_events_t *const events) {
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
+    for (int i = 0; i < knowledge->sonars; i++) {
+        const argus_sonar_t *const s = &knowledge->sonar[i];
         if (s->reported && (s->health == ARGUS_UNKNOWN || s->health == ARGUS_STALE)) {
-            argus_say_change(self, i, ARGUS_CHANGE_JUDGED, ARGUS_KIND_NONE, s->reading_mm);
+            argus_emit_change(events, knowledge, i, ARGUS_CHANGE_JUDGED, ARGUS_KIND_NONE, s->reading_mm);
         }
     }
 }
@@ -41,16 +40,16 @@ void argus_conclude_check(argus_t *const self, argus_intent_t *const intent) {
     ARGUS_ASSERT(self->mode == ARGUS_MODE_CHECKING);
     const argus_mask_t suspects =
         (argus_mask_t)(find_suspects(self, &self->algorithm1) | argus_open_suspects(self));
-    argus_flag_suspects(self, suspects);
+    argus_flag_suspects(self, &self->knowledge, &self->events, suspects);
     argus_looks_checked(&self->looks, self->now_ms);
     if (is_look_due(self, suspects) && !self->orders.passive && !argus_is_stopped(self)) {
         verify(suspects, intent);
         return;
     }
-    declare_healthy(self);
+    declare_healthy(&self->knowledge, &self->events);
     argus_replan(self);
     self->checked = true;
-    argus_tell(self, ARGUS_EV_HEALTH_CHECK, argus_count_bits(argus_out(&self->knowledge)));
+    argus_emit(&self->events, ARGUS_EV_HEALTH_CHECK, argus_count_bits(argus_out(&self->knowledge)));
     intent->act = ARGUS_DO_DECIDE;
 }
 
@@ -60,13 +59,13 @@ static bool is_due(const argus_t *const self) {
 }
 
 // A robot that may not turn cannot verify: there a suspicion lasts as long as the disparity.
-static void drop_suspicions(argus_t *const self) {
-    ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
+static void drop_suspicions(const argus_t *const self, argus_knowledge_t *const knowledge,
+                            argus_events_t *const events) {
     ARGUS_ASSERT(self->orders.passive);
-    for (int i = 0; i < self->knowledge.sonars; i++) {
-        if (argus_robot_faces_forward(self->knowledge.robot, i) &&
-            self->knowledge.sonar[i].health == ARGUS_SUSPECT && self->algorithm1.of[i].in_a_row == 0) {
-            argus_say_change(self, i, ARGUS_CHANGE_DROPPED, ARGUS_KIND_NONE, 0);
+    for (int i = 0; i < knowledge->sonars; i++) {
+        if (argus_robot_faces_forward(knowledge->robot, i) && knowledge->sonar[i].health == ARGUS_SUSPECT &&
+            self->algorithm1.of[i].in_a_row == 0) {
+            argus_emit_change(events, knowledge, i, ARGUS_CHANGE_DROPPED, ARGUS_KIND_NONE, 0);
         }
     }
 }
@@ -87,19 +86,18 @@ void argus_check_beside(argus_t *const self, argus_intent_t *const intent) {
         argus_count_loss(self, &self->looks);
     }
     if (self->orders.passive && argus_rules(self)->disparity) {
-        drop_suspicions(self);
+        drop_suspicions(self, &self->knowledge, &self->events);
     }
-    argus_flag_suspects(self, suspects);
+    argus_flag_suspects(self, &self->knowledge, &self->events, suspects);
     if (may_verify(self) && is_look_due(self, suspects)) {
         verify(suspects, intent);
     }
 }
 
-static void say_witnesses(argus_t *const self) {
-    const argus_verify_t *const verify = &self->verifying.verify;
+static void emit_witnesses(argus_events_t *const events, const argus_verify_t *const verify) {
     for (int side = 0; side < 2; side++) {
         if ((verify->heard >> side & 1) != 0) {
-            argus_say(self, ARGUS_EV_SONAR_WITNESS, verify->by[side], verify->witness_mm[side]);
+            argus_emit_of(events, ARGUS_EV_SONAR_WITNESS, verify->by[side], verify->witness_mm[side]);
         }
     }
 }
@@ -109,22 +107,24 @@ void argus_apply_verdict(argus_t *const self) {
     ARGUS_ASSERT(self->verifying.verify.result != ARGUS_RESULT_NONE);
     const argus_verify_t *const verify = &self->verifying.verify;
     const int sonar = verify->sonar;
-    say_witnesses(self);
+    emit_witnesses(&self->events, verify);
     switch (verify->result) {
     case ARGUS_RESULT_CONVICTED:
         argus_disable(self, sonar, ARGUS_KIND_WRONG);
         break;
     case ARGUS_RESULT_CLEARED:
         argus_algorithm1_cleared(&self->algorithm1, &self->knowledge, sonar, verify->difference_mm);
-        argus_say_change(self, sonar, ARGUS_CHANGE_CLEARED, ARGUS_KIND_NONE, verify->mean_mm);
+        argus_emit_change(&self->events, &self->knowledge, sonar, ARGUS_CHANGE_CLEARED, ARGUS_KIND_NONE,
+                          verify->mean_mm);
         break;
     case ARGUS_RESULT_DROPPED:
         argus_algorithm1_dropped(&self->algorithm1, sonar);
-        argus_say_change(self, sonar, ARGUS_CHANGE_DROPPED, ARGUS_KIND_NONE, verify->difference_mm);
+        argus_emit_change(&self->events, &self->knowledge, sonar, ARGUS_CHANGE_DROPPED, ARGUS_KIND_NONE,
+                          verify->difference_mm);
         break;
     case ARGUS_RESULT_UNPROVEN:
         argus_algorithm1_settle(&self->algorithm1, sonar);
-        argus_say(self, ARGUS_EV_SONAR_UNPROVEN, sonar, verify->reading_mm);
+        argus_emit_of(&self->events, ARGUS_EV_SONAR_UNPROVEN, sonar, verify->reading_mm);
         break;
     case ARGUS_RESULT_NONE:
     default:

@@ -162,6 +162,12 @@ typedef struct {
     bool shutdown;
 } argus_orders_t;
 
+// The sonars fire in an order of ours, in this session, begun anew at `ordered_ms`.
+typedef struct {
+    bool ordered;
+    uint32_t ordered_ms;
+} argus_firing_t;
+
 // The record of earlier missions.
 typedef struct {
     uint32_t
@@ -176,18 +182,16 @@ struct argus {
     const argus_profile_t *rules; // of the configuration
     argus_mission_t mission;
     argus_mode_t mode;
-    bool ordered; // the sonars fire in an order of ours, in this session, begun anew at ordered_ms
     bool stalled; // the link: no SIPs for a while
     bool checked; // a full health check has passed since the session opened or resumed (S6)
     uint8_t invariant_said;
-    argus_failure_t failure;
     argus_turning_t turning;
     argus_orders_t orders;
     argus_motion_t motion;
     argus_pace_t pace;
     uint32_t now_ms;
     uint32_t since_ms; // entry into the mode
-    uint32_t ordered_ms;
+    argus_firing_t firing;
     uint32_t stops; // STOP and E_STOP sent, monotonic
     argus_knowledge_t knowledge;
     argus_plan_t plan;
@@ -215,5 +219,11 @@ struct argus {
     argus_echoes_t echoes;
     argus_evidence_t evidence; // profile argus
 };
+
+// At the start of each call from outside.
+static inline void argus_set_now(argus_t *const self, const uint32_t now_ms) {
+    self->now_ms = now_ms;
+    self->events.now_ms = now_ms;
+}
 
 #endif

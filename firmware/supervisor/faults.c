@@ -6,7 +6,6 @@
 
 #include "knowledge/angle.h"
 #include "supervisor/journey.h"
-#include "supervisor/say.h"
 #include "supervisor/state.h"
 
 // The forward-facing sonars in use, and every other one of the rest of their arrays: these watch the swing
@@ -32,8 +31,7 @@ static size_t add_half(const argus_t *const self, const int half, uint8_t *const
 }
 
 // In failure mode the slots of the sonars that are out go to those that look ahead.
-void argus_share_slots(argus_t *const self) {
-    ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
+void argus_share_slots(const argus_t *const self, argus_outbox_t *const out, argus_firing_t *const firing) {
     if (!argus_is_active(self) || !argus_is_open(self)) {
         return;
     }
@@ -46,16 +44,20 @@ void argus_share_slots(argus_t *const self) {
         }
     }
     ARGUS_ASSERT(count <= sizeof order);
-    argus_outbox_string(&self->session.outbox, ARCOS_CMD_POLLING, order, count);
-    self->ordered = true;
-    self->ordered_ms = self->now_ms;
+    argus_outbox_string(out, ARCOS_CMD_POLLING, order, count);
+    *firing = (argus_firing_t){.ordered = true, .ordered_ms = self->now_ms};
 }
 
-static void say_plan(argus_t *const self) {
-    ARGUS_ASSERT(self->plan.count <= ARGUS_ROTATIONS_MAX);
-    argus_tell(self, ARGUS_EV_PLAN, self->plan.count);
-    for (int i = 0; i < self->plan.count; i++) {
-        argus_tell(self, ARGUS_EV_PLAN_ROTATION, self->plan.rotation_deg[i]);
+static void emit_plan(argus_events_t *const events, const argus_plan_t *const before,
+                      const argus_plan_t *const plan) {
+    ARGUS_ASSERT(plan->count <= ARGUS_ROTATIONS_MAX);
+    if (before->disabled == plan->disabled && before->count == plan->count &&
+        memcmp(before->rotation_deg, plan->rotation_deg, sizeof plan->rotation_deg) == 0) {
+        return;
+    }
+    argus_emit(events, ARGUS_EV_PLAN, plan->count);
+    for (int i = 0; i < plan->count; i++) {
+        argus_emit(events, ARGUS_EV_PLAN_ROTATION, plan->rotation_deg[i]);
     }
 }
 
@@ -86,57 +88,47 @@ static argus_mask_t covered_suspects(const argus_t *const self) {
                           argus_robot_forward(self->knowledge.robot));
 }
 
-static void take_plan(argus_t *const self, const argus_mask_t blind) {
-    self->plan = argus_plan(self->knowledge.robot, argus_policy(self), blind, living(self));
-    ARGUS_ASSERT(self->plan.count <= ARGUS_ROTATIONS_MAX && self->plan.disabled == blind);
-}
-
-static void tell_plan(argus_t *const self, const argus_plan_t *const before) {
-    ARGUS_ASSERT(before->count <= ARGUS_ROTATIONS_MAX);
-    const argus_plan_t *const now = &self->plan;
-    const bool others = before->disabled != now->disabled;
-    if (others || before->count != now->count ||
-        memcmp(before->rotation_deg, now->rotation_deg, sizeof now->rotation_deg) != 0) {
-        say_plan(self);
-    }
-    if (others) {
-        argus_share_slots(self);
-    }
+static argus_plan_t plan_for(const argus_t *const self, const argus_mask_t blind) {
+    return argus_plan(self->knowledge.robot, argus_policy(self), blind, living(self));
 }
 
 // Doubt never leaves the robot without a plan that it has without. With the ring others may look by now.
 void argus_replan(argus_t *const self) {
     const argus_mask_t disabled = argus_out(&self->knowledge) & argus_robot_forward(self->knowledge.robot);
     const argus_mask_t blind = (argus_mask_t)(disabled | covered_suspects(self));
-    const argus_failure_t failure = argus_failure_of(self->knowledge.robot, argus_out(&self->knowledge));
+    const uint8_t failure = (uint8_t)argus_failure_of(self->knowledge.robot, argus_out(&self->knowledge));
     const argus_plan_t before = self->plan;
-    if (failure != self->failure) {
-        self->failure = failure;
+    if (failure != self->events.state) {
+        self->events.state = failure;
         const argus_mask_t front = argus_robot_forward(argus_robot_built(self->knowledge.robot));
-        argus_tell(self, ARGUS_EV_FAILURE_STATE, argus_count_bits(argus_out(&self->knowledge) & front));
+        argus_emit(&self->events, ARGUS_EV_FAILURE_STATE,
+                   argus_count_bits(argus_out(&self->knowledge) & front));
     }
     if (blind == before.disabled && (blind == 0 || !argus_plan_asks_ring(argus_policy(self)))) {
         return;
     }
-    take_plan(self, blind);
+    self->plan = plan_for(self, blind);
     if (!self->plan.complete && argus_rules(self)->evidence) {
-        take_plan(self, disabled);
+        self->plan = plan_for(self, disabled);
     }
-    tell_plan(self, &before);
+    emit_plan(&self->events, &before, &self->plan);
+    if (before.disabled != self->plan.disabled) {
+        argus_share_slots(self, &self->session.outbox, &self->firing);
+    }
 }
 
-bool argus_keep_plan(argus_t *const self) {
-    if (self->plan.disabled == 0 || !argus_plan_asks_ring(argus_policy(self))) {
+bool argus_keep_plan(const argus_t *const self, argus_plan_t *const plan, argus_events_t *const events) {
+    if (plan->disabled == 0 || !argus_plan_asks_ring(argus_policy(self))) {
         return true;
     }
-    const argus_plan_t before = self->plan;
+    const argus_plan_t before = *plan;
     const unsigned lives = living(self) & ~(unsigned)before.disabled;
     const unsigned needs = argus_plan_needs(self->knowledge.robot, &before);
     if ((needs & ~lives) != 0 || (!before.complete && lives != before.looks)) {
-        take_plan(self, before.disabled);
-        tell_plan(self, &before);
+        *plan = plan_for(self, before.disabled);
+        emit_plan(events, &before, plan);
     }
-    return self->plan.complete;
+    return plan->complete;
 }
 
 void argus_disable(argus_t *const self, const int sonar, const argus_fault_kind_t kind) {
@@ -150,50 +142,33 @@ void argus_disable(argus_t *const self, const int sonar, const argus_fault_kind_
     argus_rays_forget(&self->rays, sonar);
     argus_journey_restart(&self->travel);
     argus_replan(self);
-    argus_say_event(self, said); // after the plan that follows from it
+    argus_emit_event(&self->events, said); // after the plan that follows from it
 }
 
-void argus_lose(argus_t *const self, const argus_mask_t dead, const argus_mask_t silent) {
-    ARGUS_ASSERT((((unsigned)dead | silent) & ~(unsigned)argus_robot_all(self->knowledge.robot)) == 0);
-    ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
-    ARGUS_ASSERT(((dead | silent) & argus_out(&self->knowledge)) == 0);
-    for (int i = 0; i < self->knowledge.sonars; i++) {
-        if ((dead >> i & 1u) != 0) {
-            argus_say(self, ARGUS_EV_SONAR_DEAD, i, self->knowledge.sonar[i].reading_mm);
-            argus_disable(self, i, ARGUS_KIND_OFF);
-        } else if ((silent >> i & 1u) != 0) {
-            const uint32_t age_ms = argus_age_ms(&self->knowledge, i, self->now_ms);
-            argus_say(self, ARGUS_EV_SONAR_SILENT, i, (int32_t)(age_ms & 0x7FFFFFFFu));
-            argus_disable(self, i, ARGUS_KIND_SILENT);
-        }
-    }
-}
-
-void argus_watch(argus_t *const self, const argus_mask_t sonars) {
-    ARGUS_ASSERT((sonars & ~(unsigned)argus_robot_all(self->knowledge.robot)) == 0);
-    ARGUS_ASSERT((sonars & argus_robot_forward(self->knowledge.robot)) == 0);
-    for (int i = 0; i < self->knowledge.sonars; i++) {
+void argus_watch(argus_knowledge_t *const knowledge, argus_events_t *const events,
+                 const argus_mask_t sonars) {
+    ARGUS_ASSERT((sonars & argus_robot_forward(knowledge->robot)) == 0);
+    for (int i = 0; i < knowledge->sonars; i++) {
         if ((sonars >> i & 1u) == 0) {
             continue;
         }
-        if (self->knowledge.sonar[i].health == ARGUS_STALE) {
-            argus_say_change(self, i, ARGUS_CHANGE_HEARD, ARGUS_KIND_NONE, 0);
+        if (knowledge->sonar[i].health == ARGUS_STALE) {
+            argus_emit_change(events, knowledge, i, ARGUS_CHANGE_HEARD, ARGUS_KIND_NONE, 0);
         } else {
-            const uint32_t silent_ms = argus_silent_ms(&self->knowledge, i);
-            argus_say_change(self, i, ARGUS_CHANGE_STALLED, ARGUS_KIND_NONE,
-                             (int32_t)(silent_ms & 0x7FFFFFFFu));
+            argus_emit_change(events, knowledge, i, ARGUS_CHANGE_STALLED, ARGUS_KIND_NONE,
+                              (int32_t)(argus_silent_ms(knowledge, i) & 0x7FFFFFFFu));
         }
     }
 }
 
-void argus_flag_suspects(argus_t *const self, const argus_mask_t suspects) {
-    ARGUS_ASSERT((suspects & ~(unsigned)argus_robot_all(self->knowledge.robot)) == 0);
-    ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
-    ARGUS_ASSERT((suspects & argus_out(&self->knowledge)) == 0);
-    for (int i = 0; i < self->knowledge.sonars; i++) {
-        if ((suspects >> i & 1u) != 0 && self->knowledge.sonar[i].health != ARGUS_SUSPECT) {
-            argus_say_change(self, i, ARGUS_CHANGE_SUSPECTED, ARGUS_KIND_NONE,
-                             self->algorithm1.of[i].difference_mm);
+void argus_flag_suspects(const argus_t *const self, argus_knowledge_t *const knowledge,
+                         argus_events_t *const events, const argus_mask_t suspects) {
+    ARGUS_ASSERT((suspects & ~(unsigned)argus_robot_all(knowledge->robot)) == 0);
+    ARGUS_ASSERT((suspects & argus_out(knowledge)) == 0);
+    for (int i = 0; i < knowledge->sonars; i++) {
+        if ((suspects >> i & 1u) != 0 && knowledge->sonar[i].health != ARGUS_SUSPECT) {
+            argus_emit_change(events, knowledge, i, ARGUS_CHANGE_SUSPECTED, ARGUS_KIND_NONE,
+                              self->algorithm1.of[i].difference_mm);
         }
     }
 }

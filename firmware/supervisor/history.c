@@ -4,7 +4,6 @@
 
 #include "analysis/record.h"
 #include "supervisor/faults.h"
-#include "supervisor/say.h"
 #include "supervisor/state.h"
 
 static uint32_t robot_of(const argus_t *const self) {
@@ -18,24 +17,18 @@ size_t argus_record_save(const argus_t *const self, uint8_t *const buffer, const
 
 // What failed last time may have been repaired: it comes back on evidence, like one that failed in this
 // mission.
-static void put_on_probation(argus_t *const self, const argus_mask_t sonars) {
-    ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
-    ARGUS_ASSERT(argus_rules(self)->evidence);
-    for (int i = 0; i < self->knowledge.sonars; i++) {
-        const argus_sonar_t *const s = &self->knowledge.sonar[i];
-        if ((sonars >> i & 1u) == 0 || argus_is_out(&self->knowledge, i)) {
+static void put_on_probation(argus_history_t *const history, argus_knowledge_t *const knowledge,
+                             argus_events_t *const events, const argus_mask_t sonars) {
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
+    for (int i = 0; i < knowledge->sonars; i++) {
+        if ((sonars >> i & 1u) == 0 || argus_is_out(knowledge, i)) {
             continue;
         }
-        const argus_fault_kind_t kind = s->kind_before == ARGUS_KIND_NONE ? ARGUS_KIND_WRONG : s->kind_before;
-        self->history.recorded |= (argus_mask_t)(1u << i);
-        argus_say_change(self, i, ARGUS_CHANGE_RECORDED, kind, 0);
+        const argus_fault_kind_t before = knowledge->sonar[i].kind_before;
+        const argus_fault_kind_t kind = before == ARGUS_KIND_NONE ? ARGUS_KIND_WRONG : before;
+        history->recorded |= (argus_mask_t)(1u << i);
+        argus_emit_change(events, knowledge, i, ARGUS_CHANGE_RECORDED, kind, 0);
     }
-    argus_replan(self);
-}
-
-static void refuse(argus_t *const self, const argus_record_fault_t fault) {
-    ARGUS_ASSERT(fault != ARGUS_RECORD_OK);
-    argus_tell(self, ARGUS_EV_RECORD_IGNORED, (int32_t)fault);
 }
 
 // The robot was not known when the record was read.
@@ -46,11 +39,11 @@ static void take_back(argus_t *const self) {
     for (int i = 0; i < self->knowledge.sonars; i++) {
         const argus_sonar_t *const s = &self->knowledge.sonar[i];
         if ((self->history.recorded >> i & 1u) != 0 && s->health == ARGUS_PROBATION) {
-            argus_say_change(self, i, ARGUS_CHANGE_FORGOTTEN, ARGUS_KIND_NONE, 0);
+            argus_emit_change(&self->events, &self->knowledge, i, ARGUS_CHANGE_FORGOTTEN, ARGUS_KIND_NONE, 0);
         }
     }
     self->history.recorded = 0;
-    refuse(self, ARGUS_RECORD_OTHER_ROBOT);
+    argus_emit(&self->events, ARGUS_EV_RECORD_IGNORED, ARGUS_RECORD_OTHER_ROBOT);
     argus_replan(self);
 }
 
@@ -69,13 +62,14 @@ bool argus_record_load(argus_t *const self, const uint8_t *const record, const s
     const argus_record_fault_t fault =
         argus_record_decode(&self->knowledge, &self->evidence, &note, record, length);
     if (fault != ARGUS_RECORD_OK) {
-        refuse(self, fault);
+        argus_emit(&self->events, ARGUS_EV_RECORD_IGNORED, (int32_t)fault);
         return false;
     }
     self->history.loaded = true;
     self->history.robot = note.robot;
     if (argus_rules(self)->evidence) {
-        put_on_probation(self, note.out);
+        put_on_probation(&self->history, &self->knowledge, &self->events, note.out);
+        argus_replan(self);
     }
     if (argus_is_open(self)) {
         argus_meet_robot(self);

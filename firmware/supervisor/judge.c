@@ -8,7 +8,6 @@
 #include "supervisor/looks.h"
 #include "supervisor/mode.h"
 #include "supervisor/reverse.h"
-#include "supervisor/say.h"
 #include "supervisor/state.h"
 
 #define PROBATION_AGREED 4
@@ -46,7 +45,7 @@ static bool is_kept(const argus_t *const self, const argus_finding_t *const find
 static void warn_of(argus_t *const self, const int sonar, const bool named_before) {
     const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
     if (!named_before && s->missions_named > 0) {
-        argus_say(self, ARGUS_EV_SONAR_DEGRADING, sonar, s->missions_named + 1);
+        argus_emit_of(&self->events, ARGUS_EV_SONAR_DEGRADING, sonar, s->missions_named + 1);
     }
 }
 
@@ -57,19 +56,20 @@ static void name(argus_t *const self, const int sonar, const argus_finding_t *co
     const argus_fault_kind_t kind = argus_named_kind(self, sonar, finding);
     const bool named = argus_looks_stands(&self->looks, sonar, kind, self->now_ms) || finding->doubted;
     if (named) {
-        argus_flag_suspects(self, (argus_mask_t)(1u << sonar));
+        argus_flag_suspects(self, &self->knowledge, &self->events, (argus_mask_t)(1u << sonar));
     }
     if (named && s->health == ARGUS_SUSPECT && kind != s->kind) {
         const bool named_before = s->named;
         argus_looks_rename(&self->looks, sonar, s->kind, kind);
-        argus_say_change(self, sonar, ARGUS_CHANGE_NAMED, kind, (int32_t)kind);
+        argus_emit_change(&self->events, &self->knowledge, sonar, ARGUS_CHANGE_NAMED, kind, (int32_t)kind);
         warn_of(self, sonar, named_before);
         argus_rays_forget(&self->rays, sonar); // nothing that it has seen is counted on
         argus_replan(self);
     }
     if (s->health == ARGUS_SUSPECT && !finding->doubted && !is_kept(self, finding)) {
         argus_looks_forget(&self->looks, sonar);
-        argus_say_change(self, sonar, ARGUS_CHANGE_DROPPED, ARGUS_KIND_NONE, s->reading_mm);
+        argus_emit_change(&self->events, &self->knowledge, sonar, ARGUS_CHANGE_DROPPED, ARGUS_KIND_NONE,
+                          s->reading_mm);
         argus_replan(self);
     }
 }
@@ -106,8 +106,9 @@ static void restore(argus_t *const self, const int sonar) {
     const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
     const bool healthy = s->health == ARGUS_PROBATION;
     argus_evidence_agree_anew(&self->evidence, sonar);
-    argus_say_change(self, sonar, healthy ? ARGUS_CHANGE_RESTORED : ARGUS_CHANGE_TRIED,
-                     healthy ? ARGUS_KIND_NONE : s->kind, s->reading_mm);
+    argus_emit_change(&self->events, &self->knowledge, sonar,
+                      healthy ? ARGUS_CHANGE_RESTORED : ARGUS_CHANGE_TRIED,
+                      healthy ? ARGUS_KIND_NONE : s->kind, s->reading_mm);
     argus_replan(self);
 }
 
@@ -153,7 +154,7 @@ static void judge_out(argus_t *const self, const int sonar, const argus_finding_
     const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
     const argus_fault_kind_t kind = kind_of_out(self, sonar, finding);
     if (s->health == ARGUS_DISABLED && kind != ARGUS_KIND_NONE && kind != s->kind) {
-        argus_say_change(self, sonar, ARGUS_CHANGE_RENAMED, kind, (int32_t)kind);
+        argus_emit_change(&self->events, &self->knowledge, sonar, ARGUS_CHANGE_RENAMED, kind, (int32_t)kind);
     }
     if (finding->keeps_out) {
         if (s->health == ARGUS_PROBATION && finding->named != ARGUS_KIND_NONE) {
@@ -174,7 +175,8 @@ static bool is_passed_over(const argus_t *const self, const int sonar) {
     const argus_robot_t *const robot = self->knowledge.robot;
     const bool late =
         (argus_robot_polled(robot) >> sonar & 1u) != 0 && !argus_robot_faces_forward(robot, sonar);
-    return late && self->ordered && self->now_ms - self->ordered_ms <= (uint32_t)self->config.stale_ms;
+    return late && self->firing.ordered &&
+           self->now_ms - self->firing.ordered_ms <= (uint32_t)self->config.stale_ms;
 }
 
 // Those that do not face forward yield to the same tests; one that yields nothing is out as well.
@@ -202,7 +204,8 @@ void argus_judge(argus_t *const self, const int sonar, argus_intent_t *const int
         judge_out(self, sonar, &finding, intent);
     } else if (has_fallen_silent(self, sonar)) {
         if (is_missing(self, sonar)) {
-            argus_say_change(self, sonar, ARGUS_CHANGE_MISSING, ARGUS_KIND_NONE, 0);
+            argus_emit_change(&self->events, &self->knowledge, sonar, ARGUS_CHANGE_MISSING, ARGUS_KIND_NONE,
+                              0);
             return;
         }
         argus_disable(self, sonar, ARGUS_KIND_SILENT);

@@ -4,8 +4,6 @@
 
 #include "knowledge/angle.h"
 #include "supervisor/mode.h"
-#include "supervisor/modes.h"
-#include "supervisor/say.h"
 #include "supervisor/state.h"
 
 #define CYCLE_MS ARCOS_TIMING_SIP_CYCLE_MS
@@ -20,9 +18,9 @@
 #define LEVEL_SLOWER 1
 #define LEVEL_STANDS 2
 
-void argus_latency_open(argus_t *const self) {
-    self->latency = (argus_latency_t){0};
-    argus_roundtrip_begin(&self->latency.trip, self->session.has_robot);
+void argus_latency_open(argus_latency_t *const mine, const bool has_robot) {
+    *mine = (argus_latency_t){0};
+    argus_roundtrip_begin(&mine->trip, has_robot);
 }
 
 // Beyond what it is on a link without delay, to a cycle less.
@@ -33,14 +31,13 @@ static int32_t beyond_ms(const argus_t *const self) {
     return argus_between(0, LATE_MOST_MS, beyond);
 }
 
-static void say(argus_t *const self, const uint8_t level) {
-    argus_latency_t *const mine = &self->latency;
+static void emit(argus_latency_t *const mine, argus_events_t *const events, const uint8_t level) {
     if (level == mine->level || (level < mine->level && level != LEVEL_PROMPT)) {
         return;
     }
     mine->level = level;
-    argus_tell(self, level == LEVEL_PROMPT ? ARGUS_EV_LINK_PROMPT : ARGUS_EV_LINK_SLOW,
-               argus_roundtrip_ms(&mine->trip, self->now_ms));
+    argus_emit(events, level == LEVEL_PROMPT ? ARGUS_EV_LINK_PROMPT : ARGUS_EV_LINK_SLOW,
+               argus_roundtrip_ms(&mine->trip, events->now_ms));
 }
 
 static uint8_t level_of(const argus_latency_t *const mine) {
@@ -51,31 +48,25 @@ static uint8_t level_of(const argus_latency_t *const mine) {
                                                                                   : LEVEL_PROMPT;
 }
 
-static bool may_check(const argus_t *const self) {
-    return argus_mode_may(self->mode, ARGUS_IN_SESSION) && self->mode != ARGUS_MODE_WAITING;
+// What follows is a check; it does not begin before the link is prompt.
+static void check(const argus_t *const self, const argus_stop_t stop, argus_intent_t *const intent) {
+    const bool may = argus_mode_may(self->mode, ARGUS_IN_SESSION) && self->mode != ARGUS_MODE_WAITING;
+    intent->stop = (uint8_t)stop;
+    intent->act = may ? ARGUS_DO_CHECK : ARGUS_DO_NOTHING;
+    intent->full = true;
 }
 
-// Whatever moves is stopped; the check that follows does not begin before the link is prompt.
-static void stand(argus_t *const self) {
-    self->latency.stands = true;
-    self->latency.calm_sips = 0;
-    self->checked = false;
-    say(self, LEVEL_STANDS);
-    argus_stop_and_do(self, ARGUS_STOP_STOP, may_check(self) ? ARGUS_DO_CHECK : ARGUS_DO_NOTHING, true);
-}
-
-// All that was read meanwhile was late.
-static void go_on(argus_t *const self) {
-    self->latency.stands = false;
-    say(self, level_of(&self->latency));
-    argus_stop_and_do(self, ARGUS_STOP_HALT, may_check(self) ? ARGUS_DO_CHECK : ARGUS_DO_NOTHING, true);
-}
-
-static void judge(argus_t *const self, const int32_t beyond) {
-    argus_latency_t *const mine = &self->latency;
+// Whatever moves is stopped.
+static void judge(const argus_t *const self, argus_latency_t *const mine, argus_events_t *const events,
+                  argus_intent_t *const intent) {
+    const int32_t beyond = beyond_ms(self);
     const bool stands = beyond > mine->late_ms + OVERDUE_MS || mine->late_ms > STANDS_MS;
     if (stands && !mine->stands) {
-        stand(self);
+        mine->stands = true;
+        mine->calm_sips = 0;
+        emit(mine, events, LEVEL_STANDS);
+        intent->unchecked = true;
+        check(self, ARGUS_STOP_STOP, intent);
     }
 }
 
@@ -94,27 +85,27 @@ static void measure(argus_latency_t *const mine, const int32_t beyond) {
     }
 }
 
-bool argus_latency_sip(argus_t *const self) {
-    argus_latency_t *const mine = &self->latency;
-    argus_roundtrip_sip(&mine->trip, &self->session, &self->config, self->now_ms);
+bool argus_latency_sip(const argus_t *const self, argus_latency_t *const mine, argus_events_t *const events,
+                       argus_intent_t *const intent) {
     const int32_t beyond = beyond_ms(self);
     mine->overdue = beyond > mine->late_ms;
-    judge(self, beyond);
+    judge(self, mine, events, intent);
     measure(mine, beyond);
     const bool calm = !mine->overdue && mine->late_ms <= STANDS_MS;
     mine->calm_sips = (uint8_t)(calm ? argus_min(mine->calm_sips + 1, CALM_SIPS) : 0);
     const bool goes_on = mine->stands && mine->calm_sips == CALM_SIPS;
-    if (goes_on) {
-        go_on(self);
+    if (goes_on) { // all that was read meanwhile was late
+        mine->stands = false;
+        check(self, ARGUS_STOP_HALT, intent);
     }
-    say(self, level_of(mine));
-    self->motion.late_ms = (uint32_t)mine->late_ms;
+    emit(mine, events, level_of(mine));
     return goes_on;
 }
 
-void argus_latency_process(argus_t *const self) {
-    if (argus_is_open(self) && argus_roundtrip_is_known(&self->latency.trip)) {
-        judge(self, beyond_ms(self));
+void argus_latency_process(const argus_t *const self, argus_latency_t *const mine,
+                           argus_events_t *const events, argus_intent_t *const intent) {
+    if (argus_is_open(self) && argus_roundtrip_is_known(&mine->trip)) {
+        judge(self, mine, events, intent);
     }
 }
 

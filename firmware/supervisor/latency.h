@@ -4,14 +4,17 @@
 #define ARGUS_LATENCY_H
 
 #include "supervisor/core.h"
+#include "supervisor/intent.h"
 
 // A session opens.
-void argus_latency_open(argus_t *self);
+void argus_latency_open(argus_latency_t *mine, bool has_robot);
 
-// With each SIP, before it is used; true: it goes on after a stand, and what was read meanwhile was not of
-// its time. And whenever time passes: STOP once too much is overdue.
-bool argus_latency_sip(argus_t *self);
-void argus_latency_process(argus_t *self);
+// With each SIP, after the round trip has seen it and before it is used; true: it goes on after a stand, and
+// what was read meanwhile was not of its time. And whenever time passes: STOP once too much is overdue.
+bool argus_latency_sip(const argus_t *self, argus_latency_t *mine, argus_events_t *events,
+                       argus_intent_t *intent);
+void argus_latency_process(const argus_t *self, argus_latency_t *mine, argus_events_t *events,
+                           argus_intent_t *intent);
 
 // By which the SIPs may be late, the last one too.
 int32_t argus_latency_oldest_ms(const argus_latency_t *self);

@@ -7,7 +7,6 @@
 #include "arcos/gen_arcos.h"
 #include "knowledge/angle.h"
 #include "supervisor/faults.h"
-#include "supervisor/say.h"
 #include "supervisor/state.h"
 
 #define HOLD_MM 400u         // a cleared sonar is not looked at again before this distance,
@@ -117,28 +116,30 @@ void argus_looks_forget(argus_looks_t *const self, const int sonar) {
     self->hold[sonar].lawless = false;
 }
 
-static void clear(argus_t *const self, const int sonar) {
-    ARGUS_ASSERT(!argus_is_out(&self->knowledge, sonar));
-    argus_hold_t *const hold = &self->looks.hold[sonar];
-    const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
-    if (self->knowledge.odometer_mm - hold->odometer_mm > HOLD_FORGET_MM) {
+static void clear(argus_looks_t *const looks, argus_knowledge_t *const knowledge,
+                  argus_events_t *const events, const int sonar) {
+    ARGUS_ASSERT(!argus_is_out(knowledge, sonar));
+    argus_hold_t *const hold = &looks->hold[sonar];
+    const argus_sonar_t *const s = &knowledge->sonar[sonar];
+    if (knowledge->odometer_mm - hold->odometer_mm > HOLD_FORGET_MM) {
         hold->cleared = 0;
     }
-    argus_looks_forget(&self->looks, sonar);
+    argus_looks_forget(looks, sonar);
     hold->cleared = argus_one_more(hold->cleared);
-    hold->odometer_mm = self->knowledge.odometer_mm;
+    hold->odometer_mm = knowledge->odometer_mm;
     if (s->health == ARGUS_SUSPECT) {
-        argus_say_change(self, sonar, ARGUS_CHANGE_CLEARED, ARGUS_KIND_NONE, s->reading_mm);
+        argus_emit_change(events, knowledge, sonar, ARGUS_CHANGE_CLEARED, ARGUS_KIND_NONE, s->reading_mm);
     }
 }
 
-void argus_leave_open(argus_t *const self, const argus_mask_t sonars) {
-    ARGUS_ASSERT((sonars & ~(unsigned)argus_robot_all(self->knowledge.robot)) == 0);
-    ARGUS_ASSERT((sonars & argus_out(&self->knowledge)) == 0);
-    for (int i = 0; i < self->knowledge.sonars; i++) {
+void argus_leave_open(const argus_knowledge_t *const knowledge, argus_algorithm1_t *const algorithm1,
+                      argus_events_t *const events, const argus_mask_t sonars) {
+    ARGUS_ASSERT((sonars & ~(unsigned)argus_robot_all(knowledge->robot)) == 0);
+    ARGUS_ASSERT((sonars & argus_out(knowledge)) == 0);
+    for (int i = 0; i < knowledge->sonars; i++) {
         if ((sonars >> i & 1u) != 0) {
-            argus_algorithm1_settle(&self->algorithm1, i);
-            argus_say(self, ARGUS_EV_SONAR_UNPROVEN, i, self->knowledge.sonar[i].reading_mm);
+            argus_algorithm1_settle(algorithm1, i);
+            argus_emit_of(events, ARGUS_EV_SONAR_UNPROVEN, i, knowledge->sonar[i].reading_mm);
         }
     }
 }
@@ -170,11 +171,11 @@ static void conclude(argus_t *const self, const int sonar) {
     const argus_finding_t finding = argus_finding(&self->evidence, &self->extremes, &self->common, sonar);
     const argus_fault_kind_t kind = argus_named_kind(self, sonar, &finding);
     if (asked && kind == ARGUS_KIND_NONE) {
-        clear(self, sonar);
+        clear(&self->looks, &self->knowledge, &self->events, sonar);
     } else if (suspect && is_proved(self, &self->looks.hold[sonar], sonar, kind)) {
         argus_disable(self, sonar, kind);
     } else if (suspect) {
-        argus_leave_open(self, (argus_mask_t)(1u << sonar));
+        argus_leave_open(&self->knowledge, &self->algorithm1, &self->events, (argus_mask_t)(1u << sonar));
     }
 }
 

@@ -31,7 +31,8 @@ argus_fault_kind_t argus_named_kind(const argus_t *self, int sonar, const argus_
 void argus_conclude_looks(argus_t *self);
 
 // They are not to be looked at in this place, and covered for like those that are out.
-void argus_leave_open(argus_t *self, argus_mask_t sonars);
+void argus_leave_open(const argus_knowledge_t *knowledge, argus_algorithm1_t *algorithm1,
+                      argus_events_t *events, argus_mask_t sonars);
 
 // What is remembered of looks; looks.c is its only writer ---------------------------------------------------
 

@@ -18,7 +18,6 @@
 #include "supervisor/motions.h"
 #include "supervisor/observe.h"
 #include "supervisor/orders.h"
-#include "supervisor/say.h"
 #include "supervisor/state.h"
 #include "supervisor/stranger.h"
 
@@ -39,16 +38,12 @@ void argus_manager_init(argus_t *const self, const argus_config_t *const config,
     self->orders.mended = fault == ARGUS_CONFIG_RANGE;
     self->orders.locked = fault != ARGUS_CONFIG_OK;
     self->orders.passive = self->orders.locked || config->active == 0;
-    self->now_ms = now_ms;
+    argus_set_now(self, now_ms);
     argus_session_init(&self->session);
     argus_knowledge_init(&self->knowledge);
     argus_body_is(&self->knowledge, robot, now_ms);
     argus_evidence_set_caution(&self->evidence, self->config.caution);
     argus_stop_and_do(self, ARGUS_STOP_NONE, ARGUS_DO_GO_OFFLINE, false);
-}
-
-static void check(argus_t *const self, const bool full) {
-    argus_stop_and_do(self, ARGUS_STOP_NONE, ARGUS_DO_CHECK, full);
 }
 
 bool argus_set_course(argus_t *const self, const argus_point_t *const points, const uint16_t count) {
@@ -60,17 +55,17 @@ bool argus_set_course(argus_t *const self, const argus_point_t *const points, co
     }
     self->mission = ARGUS_MISSION_RUNNING;
     argus_looks_leave(&self->looks);
-    argus_tell(self, ARGUS_EV_MISSION_START, count);
+    argus_emit(&self->events, ARGUS_EV_MISSION_START, count);
     if (self->mode == ARGUS_MODE_IDLE || self->waiting.why == ARGUS_WAIT_CATASTROPHIC) {
-        check(self, true);
+        argus_stop_and_do(self, ARGUS_STOP_NONE, ARGUS_DO_CHECK, true);
     }
     return true;
 }
 
 void argus_link_up(argus_t *const self, const uint32_t now_ms) {
-    self->now_ms = now_ms;
+    argus_set_now(self, now_ms);
     argus_session_link_up(&self->session, now_ms);
-    argus_tell(self, ARGUS_EV_LINK_UP, 0);
+    argus_emit(&self->events, ARGUS_EV_LINK_UP, 0);
 }
 
 static void note_order(argus_order_t *const order, const argus_motion_t *const motion) {
@@ -101,13 +96,13 @@ static void go_offline(argus_t *const self) {
     argus_journey_jog(&self->travel, 0);
     note_order(&self->knowledge.order, &self->motion);
     argus_motion_init(&self->motion);
-    argus_tell(self, ARGUS_EV_LINK_LOST, (int32_t)(silence_ms & 0x7FFFFFFFu));
+    argus_emit(&self->events, ARGUS_EV_LINK_LOST, (int32_t)(silence_ms & 0x7FFFFFFFu));
     argus_base_drop(&self->base);
     argus_stop_and_do(self, ARGUS_STOP_NONE, ARGUS_DO_GO_OFFLINE, false);
 }
 
 void argus_link_lost(argus_t *const self, const uint32_t now_ms) {
-    self->now_ms = now_ms;
+    argus_set_now(self, now_ms);
     argus_session_link_down(&self->session);
     go_offline(self);
 }
@@ -123,13 +118,13 @@ static void restart_evidence(argus_t *const self) {
 
 static void on_open(argus_t *const self) {
     ARGUS_ASSERT(argus_is_open(self));
-    argus_tell(self, ARGUS_EV_SESSION_OPEN, self->session.attempts);
+    argus_emit(&self->events, ARGUS_EV_SESSION_OPEN, self->session.attempts);
     argus_pace_init(&self->pace);
     self->motion.speed_mm_s = self->config.speed_mm_s; // the set-up sent it, for the robot before
-    argus_latency_open(self);
+    argus_latency_open(&self->latency, self->session.has_robot);
     argus_meet_body(self);
     if (!self->orders.passive) {
-        argus_enable_motors(self);
+        argus_enable_motors(self, &self->session.outbox);
     }
     argus_knowledge_reopen(&self->knowledge, self->now_ms);
     restart_evidence(self);
@@ -139,26 +134,27 @@ static void on_open(argus_t *const self) {
     argus_looks_open(&self->looks);
     self->stalled = false;
     argus_base_drop(&self->base);
-    self->ordered = false;
+    self->firing = (argus_firing_t){0};
     if (self->plan.disabled != 0) {
-        argus_share_slots(self); // the robot begins each session with its own order
+        argus_share_slots(self, &self->session.outbox,
+                          &self->firing); // the robot begins each session with its own order
     }
     argus_meet_robot(self);
-    check(self, true);
+    argus_stop_and_do(self, ARGUS_STOP_NONE, ARGUS_DO_CHECK, true);
 }
 
 static void on_stall(argus_t *const self) {
     self->stalled = true;
     self->checked = false;
-    argus_tell(self, ARGUS_EV_LINK_STALLED, self->config.link_stall_ms);
+    argus_emit(&self->events, ARGUS_EV_LINK_STALLED, self->config.link_stall_ms);
     argus_stop_and_do(self, ARGUS_STOP_STOP, ARGUS_DO_CHECK, true);
 }
 
 static void on_resume(argus_t *const self) {
     self->stalled = false;
-    argus_tell(self, ARGUS_EV_LINK_RESUMED, (int32_t)self->session.gap_ms);
+    argus_emit(&self->events, ARGUS_EV_LINK_RESUMED, (int32_t)self->session.gap_ms);
     restart_evidence(self);
-    check(self, true);
+    argus_stop_and_do(self, ARGUS_STOP_NONE, ARGUS_DO_CHECK, true);
 }
 
 static void take_slip(argus_slip_t *const slip, argus_knowledge_t *const knowledge) {
@@ -168,31 +164,33 @@ static void take_slip(argus_slip_t *const slip, argus_knowledge_t *const knowled
 }
 
 // Seen at once that SETV got lost, and soon that it is not heeded.
-static void take_pace(argus_t *const self) {
+static void take_pace(const argus_t *const self, argus_pace_t *const pace, argus_setup_t *const setup,
+                      argus_events_t *const events) {
     const argus_motion_t *const motion = &self->motion;
     const bool drives = motion->kind == ARGUS_MOTION_MOVE && !motion->settled;
-    const bool known = self->pace.seen_mm_s > 0;
-    const bool found = argus_pace_sip(&self->pace, &self->knowledge, drives ? motion->speed_mm_s : 0);
-    if (self->pace.sips > 0) {
-        argus_setup_doubt(&self->session.setup, ARGUS_SETUP_SPEED);
+    const bool known = pace->seen_mm_s > 0;
+    const bool found = argus_pace_sip(pace, &self->knowledge, drives ? motion->speed_mm_s : 0);
+    if (pace->sips > 0) {
+        argus_setup_doubt(setup, ARGUS_SETUP_SPEED);
     }
     if (found && !known) {
-        argus_tell(self, ARGUS_EV_SPEED_EXCEEDED, self->pace.seen_mm_s);
+        argus_emit(events, ARGUS_EV_SPEED_EXCEEDED, pace->seen_mm_s);
     }
 }
 
 // A second effector by the same layers: awareness sees a way bend, analysis sizes it, adjustment counters it.
-static void take_bend(argus_t *const self) {
+static void take_bend(const argus_t *const self, argus_bend_t *const bend, argus_wheel_t *const wheel,
+                      argus_events_t *const events) {
     const argus_motion_t *const motion = &self->motion;
     const bool straight = motion->kind == ARGUS_MOTION_MOVE && !motion->settled && motion->target_mm > 0;
     argus_way_turn_t piece;
-    if (self->config.diagnosis == 0 || !argus_bend_sip(&self->bend, &self->knowledge, straight, &piece)) {
+    if (self->config.diagnosis == 0 || !argus_bend_sip(bend, &self->knowledge, straight, &piece)) {
         return;
     }
-    const argus_wheel_news_t news = argus_wheel_judge(&self->wheel, &self->knowledge, &piece);
+    const argus_wheel_news_t news = argus_wheel_judge(wheel, &self->knowledge, &piece);
     if (news != ARGUS_WHEEL_SAME) {
-        argus_tell(self, news == ARGUS_WHEEL_NAMED ? ARGUS_EV_WHEEL_SHORT : ARGUS_EV_WHEEL_EVEN,
-                   self->wheel.short_pm);
+        argus_emit(events, news == ARGUS_WHEEL_NAMED ? ARGUS_EV_WHEEL_SHORT : ARGUS_EV_WHEEL_EVEN,
+                   wheel->short_pm);
     }
 }
 
@@ -215,13 +213,18 @@ static void take_evidence(argus_t *const self) {
         argus_common_weigh(&self->common, &self->evidence, &self->knowledge);
     }
     take_slip(&self->slip, &self->knowledge);
-    take_bend(self);
-    take_pace(self);
+    take_bend(self, &self->bend, &self->wheel, &self->events);
+    take_pace(self, &self->pace, &self->session.setup, &self->events);
 }
 
 // How late the link is, before anything of the SIP is used.
 static void take_latency(argus_t *const self) {
-    if (argus_latency_sip(self)) {
+    argus_intent_t intent = {0};
+    argus_roundtrip_sip(&self->latency.trip, &self->session, &self->config, self->now_ms);
+    const bool goes_on = argus_latency_sip(self, &self->latency, &self->events, &intent);
+    argus_do(self, &intent);
+    self->motion.late_ms = (uint32_t)self->latency.late_ms;
+    if (goes_on) {
         restart_evidence(self);
     }
     self->knowledge.late_ms = (uint32_t)argus_latency_oldest_ms(&self->latency);
@@ -238,7 +241,7 @@ static void on_sip(argus_t *const self) {
     }
     take_latency(self);
     argus_knowledge_sip(&self->knowledge, &self->session.sip, unit_um, self->now_ms);
-    if (argus_sees_through_body(self)) {
+    if (argus_sees_through_body(self, &self->orders, &self->events)) {
         argus_stop_and_do(self, ARGUS_STOP_STOP, ARGUS_DO_CHECK, true);
     }
     const int32_t away_cdeg = argus_angle_abs_diff(self->knowledge.pose.heading_cdeg, argus_base_cdeg(self));
@@ -251,12 +254,12 @@ static void on_sip(argus_t *const self) {
     argus_echoes_see(&self->echoes, &self->knowledge, self->now_ms);
     argus_rays_see(&self->rays, &self->knowledge, sweep_looks(self));
     argus_judge_all(self);
-    if (!argus_keep_plan(self) && is_on_its_way(self)) {
+    if (!argus_keep_plan(self, &self->plan, &self->events) && is_on_its_way(self)) {
         argus_stop_and_do(self, ARGUS_STOP_HALT, ARGUS_DO_CHECK, false);
     }
     if (argus_latency_is_prompt(&self->latency)) {
         if (argus_motion_sip(&self->motion, &self->knowledge, self->now_ms)) {
-            argus_turn_again(self);
+            argus_turn_again(self, &self->motion, &self->session.outbox);
         }
         argus_run_mode(self);
     }
@@ -266,10 +269,10 @@ static void on_sip(argus_t *const self) {
 
 static void handle_link(argus_t *const self, const unsigned bits) {
     if ((bits & ARGUS_SESSION_NO_ANSWER) != 0) {
-        argus_tell(self, ARGUS_EV_SESSION_NO_ANSWER, self->session.attempts);
+        argus_emit(&self->events, ARGUS_EV_SESSION_NO_ANSWER, self->session.attempts);
     }
     if ((bits & ARGUS_SESSION_DID_DISLODGE) != 0) {
-        argus_tell(self, ARGUS_EV_SESSION_DISLODGED, 0);
+        argus_emit(&self->events, ARGUS_EV_SESSION_DISLODGED, 0);
     }
     if ((bits & ARGUS_SESSION_DID_STALL) != 0) {
         on_stall(self);
@@ -294,7 +297,7 @@ static void handle(argus_t *const self, const unsigned bits) {
         on_sip(self);
     }
     if ((bits & ARGUS_SESSION_DID_CLOSE) != 0) {
-        argus_tell(self, ARGUS_EV_SESSION_CLOSED, 0);
+        argus_emit(&self->events, ARGUS_EV_SESSION_CLOSED, 0);
         argus_stop_and_do(self, ARGUS_STOP_NONE, ARGUS_DO_END, false);
     }
 }
@@ -302,7 +305,7 @@ static void handle(argus_t *const self, const unsigned bits) {
 void argus_receive(argus_t *const self, const uint32_t now_ms, const uint8_t *const bytes,
                    const size_t count) {
     ARGUS_ASSERT(bytes != NULL || count == 0);
-    self->now_ms = now_ms;
+    argus_set_now(self, now_ms);
     size_t done = 0;
     for (;;) { // one packet may be complete without taking a byte more
         size_t taken = 0;
@@ -317,7 +320,7 @@ void argus_receive(argus_t *const self, const uint32_t now_ms, const uint8_t *co
 }
 
 bool argus_observe(argus_t *const self, const uint32_t now_ms, const argus_observation_t *const observation) {
-    self->now_ms = now_ms;
+    argus_set_now(self, now_ms);
     self->orders.passive = true; // there is nobody to drive
     argus_session_t *const session = &self->session;
     argus_sip_of(&session->sip, observation, argus_robot_built(self->knowledge.robot));
@@ -327,35 +330,28 @@ bool argus_observe(argus_t *const self, const uint32_t now_ms, const argus_obser
 }
 
 // No order is taken for done because it was sent.
-static void keep_orders(argus_t *const self) {
+static void keep_orders(const argus_t *const self, argus_session_t *const session,
+                        argus_firing_t *const firing, argus_events_t *const events) {
     const bool rests = argus_at_rest(&self->knowledge) && !argus_motion_is_under_way(&self->motion);
     unsigned rows = (1u << ARGUS_SETUP_ROWS) - 1 - (1u << ARGUS_SETUP_ZERO);
     if (!rests) {
         rows &= ~(1u << ARGUS_SETUP_TELL); // the answer is long, and SIPs wait behind it
     }
     if (!argus_is_active(self)) {
-        argus_setup_drop(&self->session.setup, ARGUS_SETUP_ENABLE);
+        argus_setup_drop(&session->setup, ARGUS_SETUP_ENABLE);
         rows = 1u << ARGUS_SETUP_SONAR | 1u << ARGUS_SETUP_STOP | 1u << ARGUS_SETUP_E_STOP;
     }
-    const int away = argus_session_resend(&self->session, self->now_ms, rows);
-    if (argus_outbox_first(&self->session.outbox) == ARCOS_CMD_POLLING) {
-        self->ordered_ms = self->now_ms;
+    const int away = argus_session_resend(session, self->now_ms, rows);
+    if (argus_outbox_first(&session->outbox) == ARCOS_CMD_POLLING) {
+        firing->ordered_ms = self->now_ms;
     }
     if (away >= 0) {
-        argus_tell(self, ARGUS_EV_ORDER_UNANSWERED, away);
-    }
-}
-
-static void check_invariants(argus_t *const self) {
-    const int broken = argus_invariants_broken(self);
-    if (broken != 0 && self->invariant_said == 0) {
-        self->invariant_said = (uint8_t)broken;
-        argus_tell(self, ARGUS_EV_INVARIANT, broken);
+        argus_emit(events, ARGUS_EV_ORDER_UNANSWERED, away);
     }
 }
 
 uint32_t argus_process(argus_t *const self, const uint32_t now_ms) {
-    self->now_ms = now_ms;
+    argus_set_now(self, now_ms);
     for (;;) {
         const unsigned bits = argus_session_process(&self->session, &self->config, now_ms);
         if (bits == 0) {
@@ -363,10 +359,16 @@ uint32_t argus_process(argus_t *const self, const uint32_t now_ms) {
         }
         handle(self, bits);
     }
-    argus_latency_process(self);
+    argus_intent_t intent = {0};
+    argus_latency_process(self, &self->latency, &self->events, &intent);
+    argus_do(self, &intent);
     argus_process_mode(self);
-    keep_orders(self);
-    check_invariants(self);
+    keep_orders(self, &self->session, &self->firing, &self->events);
+    const int broken = argus_invariants_broken(self);
+    if (broken != 0 && self->invariant_said == 0) {
+        self->invariant_said = (uint8_t)broken;
+        argus_emit(&self->events, ARGUS_EV_INVARIANT, broken);
+    }
     return self->session.parser.length > 0 || self->session.outbox.length > 0 ? BUSY_POLL_MS : IDLE_POLL_MS;
 }
 
@@ -382,18 +384,19 @@ bool argus_next_event(argus_t *const self, argus_event_t *const event) {
     if (events->lost == events->lost_said) {
         return false;
     }
-    argus_tell(self, ARGUS_EV_EVENTS_LOST, (int32_t)((events->lost - events->lost_said) & 0x7FFFFFFFu));
+    argus_emit(&self->events, ARGUS_EV_EVENTS_LOST,
+               (int32_t)((events->lost - events->lost_said) & 0x7FFFFFFFu));
     events->lost_said = events->lost;
     return argus_events_pop(events, event);
 }
 
 bool argus_operator(argus_t *const self, const uint32_t now_ms, const argus_op_t op, const int32_t argument) {
-    self->now_ms = now_ms;
+    argus_set_now(self, now_ms);
     return argus_obey(self, op, argument);
 }
 
 void argus_shutdown(argus_t *const self, const uint32_t now_ms) {
-    self->now_ms = now_ms;
+    argus_set_now(self, now_ms);
     if (self->orders.shutdown) {
         return;
     }

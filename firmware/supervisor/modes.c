@@ -13,7 +13,6 @@
 #include "supervisor/reflexes.h"
 #include "supervisor/resting.h"
 #include "supervisor/reverse.h"
-#include "supervisor/say.h"
 #include "supervisor/state.h"
 #include "supervisor/travel.h"
 
@@ -33,6 +32,33 @@ static void enter(argus_t *const self, const argus_mode_t mode) {
     }
 }
 
+// STOP or E_STOP; under `passive` nothing is sent, and rest waited for. What an operator asked for is not
+// taken up again by itself.
+static void stop(argus_t *const self, const uint8_t command) {
+    ARGUS_ASSERT(command == ARCOS_CMD_STOP || command == ARCOS_CMD_E_STOP);
+    argus_journey_jog(&self->travel, 0);
+    if (self->orders.passive) {
+        argus_motion_hold(&self->motion, self->now_ms);
+        return;
+    }
+    argus_motion_stop(&self->motion, &self->session.outbox, self->now_ms);
+    if (command == ARCOS_CMD_E_STOP) {
+        argus_outbox_urgent(&self->session.outbox, ARCOS_CMD_E_STOP);
+    }
+    self->stops++;
+    argus_emit(&self->events, ARGUS_EV_STOPPED, argus_built_heading_cdeg(&self->knowledge));
+}
+
+// Whatever is under way must not go on beside a check.
+static void come_to_rest(argus_t *const self) {
+    const argus_motion_t *const motion = &self->motion;
+    if (argus_motion_is_under_way(motion) && !motion->failed) {
+        stop(self, ARCOS_CMD_STOP);
+    } else if (!motion->settled && (motion->kind != ARGUS_MOTION_STOP || motion->failed)) {
+        argus_motion_hold(&self->motion, self->now_ms);
+    }
+}
+
 // Entering a mode ------------------------------------------------------------------------------------------
 
 // At rest on the base heading.
@@ -48,7 +74,7 @@ static void enter_checking(argus_t *const self, const argus_intent_t *const inte
     mine->marked = false;
     mine->all_round = intent->all_round || intent->again;
     argus_journey_leave_goal(&self->travel);
-    argus_come_to_rest(self);
+    come_to_rest(self);
     enter(self, ARGUS_MODE_CHECKING);
     if (intent->again) {
         self->turning.again = true;
@@ -61,12 +87,14 @@ static void enter_checking(argus_t *const self, const argus_intent_t *const inte
 static void enter_verifying(argus_t *const self, const argus_mask_t suspects) {
     ARGUS_ASSERT((suspects & ~(unsigned)argus_robot_all(self->knowledge.robot)) == 0);
     ARGUS_ASSERT(!self->orders.passive);
-    argus_flag_suspects(self, suspects);
+    argus_flag_suspects(self, &self->knowledge, &self->events, suspects);
     argus_algorithm1_reopen(&self->algorithm1, suspects);
     argus_looks_begin(&self->looks, self->travel.arriving);
-    argus_halt(self);
+    if (argus_is_to_halt(self)) {
+        stop(self, ARCOS_CMD_STOP);
+    }
     if (!self->motion.settled && self->motion.kind != ARGUS_MOTION_STOP) {
-        argus_hold(self);
+        argus_motion_hold(&self->motion, self->now_ms);
     }
     enter(self, ARGUS_MODE_VERIFYING);
 }
@@ -79,27 +107,23 @@ static void enter_waiting(argus_t *const self, const argus_wait_t why) {
         mine->last = why;
         mine->since_ms = self->now_ms;
         mine->said_s = 0;
-        argus_tell(self, why == ARGUS_WAIT_WAY ? ARGUS_EV_NO_WAY : ARGUS_EV_WAITING, 0);
+        argus_emit(&self->events, why == ARGUS_WAIT_WAY ? ARGUS_EV_NO_WAY : ARGUS_EV_WAITING, 0);
     }
     mine->why = why;
     mine->tried_ms = self->now_ms;
     enter(self, ARGUS_MODE_WAITING);
 }
 
-static void say_unheard(argus_t *const self, const argus_guard_t *const guard) {
-    if (!argus_guard_is_heard(guard) && argus_looks_unheard(&self->looks)) {
-        argus_tell(self, ARGUS_EV_NO_ECHO, argus_guard_unseen_mm_s(guard));
-    }
-}
-
 static void enter_travel(argus_t *const self) {
     const argus_guard_t guard = argus_guard(self);
-    say_unheard(self, &guard);
+    if (!argus_guard_is_heard(&guard) && argus_looks_unheard(&self->looks)) {
+        argus_emit(&self->events, ARGUS_EV_NO_ECHO, argus_guard_unseen_mm_s(&guard));
+    }
     ARGUS_ASSERT(self->checked && (guard.creeps || argus_guard_may_step(&self->plan)));
     argus_begin_travel(&self->travel);
     argus_base_drop(&self->base);
     if (guard.creeps) {
-        argus_tell(self, ARGUS_EV_CREEPING, argus_guard_unseen_mm_s(&guard));
+        argus_emit(&self->events, ARGUS_EV_CREEPING, argus_guard_unseen_mm_s(&guard));
         enter(self, ARGUS_MODE_CREEPING);
     } else {
         enter(self, argus_guard_may_drive(&guard, &self->plan) ? ARGUS_MODE_DRIVING : ARGUS_MODE_SWEEPING);
@@ -113,21 +137,23 @@ static void enter_idle(argus_t *const self) {
     enter(self, ARGUS_MODE_IDLE);
 }
 
-static void fail_mission(argus_t *const self) {
-    if (self->mission == ARGUS_MISSION_RUNNING) {
-        self->mission = ARGUS_MISSION_FAILED;
-        argus_tell(self, ARGUS_EV_MISSION_FAILED, argus_task_goal_mm(&self->travel.task, &self->knowledge));
+static void fail_mission(const argus_t *const self, argus_mission_t *const mission,
+                         argus_events_t *const events) {
+    if (*mission == ARGUS_MISSION_RUNNING) {
+        *mission = ARGUS_MISSION_FAILED;
+        argus_emit(events, ARGUS_EV_MISSION_FAILED, argus_task_goal_mm(&self->travel.task, &self->knowledge));
     }
 }
 
 // No sonar ahead has heard an echo yet, others have: a look lets them.
-static void try_ahead(argus_t *const self, const argus_mask_t sonars, argus_intent_t *const next) {
-    ARGUS_ASSERT(sonars != 0 && !self->looks.tried);
+static void try_ahead(const argus_t *const self, argus_looks_t *const looks, const argus_mask_t sonars,
+                      argus_intent_t *const next) {
+    ARGUS_ASSERT(sonars != 0 && !looks->tried);
     if (self->mode != ARGUS_MODE_CHECKING) {
         argus_to_check(next, true);
         return;
     }
-    argus_looks_tried(&self->looks);
+    argus_looks_tried(looks);
     next->act = ARGUS_DO_VERIFY;
     next->sonars = sonars;
 }
@@ -137,7 +163,7 @@ static void stand(argus_t *const self, argus_intent_t *const next) {
     argus_journey_jog(&self->travel, 0);
     argus_to_wait(next, ARGUS_WAIT_ECHO);
     if (!argus_guard_may_step(&self->plan)) {
-        fail_mission(self);
+        fail_mission(self, &self->mission, &self->events);
         argus_to_wait(next, ARGUS_WAIT_CATASTROPHIC);
     }
 }
@@ -170,7 +196,7 @@ static void decide(argus_t *const self, argus_intent_t *const next) {
     }
     const argus_mask_t unheard = argus_to_try(self);
     if (unheard != 0) {
-        try_ahead(self, unheard, next);
+        try_ahead(self, &self->looks, unheard, next);
     } else {
         set_off(self, next);
     }
@@ -181,7 +207,7 @@ static void decide(argus_t *const self, argus_intent_t *const next) {
 
 static void turn(argus_t *const self, const int32_t heading_cdeg, argus_intent_t *const next) {
     ARGUS_ASSERT(!self->orders.passive && !self->orders.shutdown);
-    if (argus_turn_to(self, heading_cdeg)) {
+    if (argus_turn_to(self, &self->motion, &self->bend, &self->session.outbox, heading_cdeg)) {
         argus_waiting_t *const waiting = &self->waiting;
         waiting->last = waiting->last == ARGUS_WAIT_TURN ? ARGUS_WAIT_NONE : waiting->last;
         self->turning.again = false;
@@ -202,22 +228,24 @@ static void back(argus_t *const self, const argus_intent_t *const intent) {
         return;
     }
     const int32_t most_mm_s = guard.creeps ? argus_guard_unseen_mm_s(&guard) : intent->speed_mm_s;
-    if (argus_move(self, -intent->mm, argus_min(intent->speed_mm_s, most_mm_s))) {
-        argus_tell(self, ARGUS_EV_BACKING, intent->mm);
+    if (argus_move(self, &self->motion, &self->session.outbox, -intent->mm,
+                   argus_min(intent->speed_mm_s, most_mm_s))) {
+        argus_emit(&self->events, ARGUS_EV_BACKING, intent->mm);
         enter(self, ARGUS_MODE_BACKING);
     }
 }
 
 // The robot will stand somewhere else: what was tried and verified here does not count there.
-static void move_on(argus_t *const self) {
+static void move_on(const argus_t *const self, argus_algorithm1_t *const algorithm1,
+                    argus_turning_t *const turning, argus_waiting_t *const waiting) {
     ARGUS_ASSERT(self->checked);
     // A suspect that the evidence could not clear is covered for like one that is out.
     const bool keeps = argus_rules(self)->evidence != 0;
     const argus_mask_t kept = keeps ? argus_with_health(&self->knowledge, ARGUS_SUSPECT) : 0;
-    argus_algorithm1_moved(&self->algorithm1, kept);
-    self->turning.backed = 0;
-    self->turning.again = false;
-    self->waiting.last = ARGUS_WAIT_NONE;
+    argus_algorithm1_moved(algorithm1, kept);
+    turning->backed = 0;
+    turning->again = false;
+    waiting->last = ARGUS_WAIT_NONE;
 }
 
 static void go_ahead(argus_t *const self, const argus_intent_t *const intent) {
@@ -235,77 +263,80 @@ static void go_ahead(argus_t *const self, const argus_intent_t *const intent) {
         ARGUS_ASSERT(argus_guard_may_drive(&guard, &self->plan) &&
                      intent->mm <= argus_guard_ahead_mm(&guard, argus_guard_seen_mm(&guard)));
     }
-    if (!argus_move(self, intent->mm, speed_mm_s)) {
-        argus_hold(self);
+    if (!argus_move(self, &self->motion, &self->session.outbox, intent->mm, speed_mm_s)) {
+        argus_motion_hold(&self->motion, self->now_ms);
         return;
     }
     if (intent->moves_on) {
-        move_on(self);
+        move_on(self, &self->algorithm1, &self->turning, &self->waiting);
     }
     if (intent->steers) {
-        argus_steer(self, intent->cdeg);
+        argus_steer(self, &self->bend, &self->session.outbox, intent->cdeg);
     }
 }
 
 // The point is remembered, or the rest of the turn would be tried at once.
-static void end_turn(argus_t *const self, const argus_point_t at, argus_intent_t *const next) {
+static void end_turn(const argus_t *const self, argus_echoes_t *const echoes, const argus_point_t at,
+                     argus_intent_t *const next) {
     ARGUS_ASSERT(self->motion.kind == ARGUS_MOTION_TURN);
     const argus_guard_t guard = argus_guard(self);
-    argus_echoes_touched(&self->echoes, at, self->now_ms);
-    argus_say(self, ARGUS_EV_TURN_BLOCKED, argus_guard_barring(&guard), argus_guard_nearest_mm(&guard, 0));
+    argus_echoes_touched(echoes, at, self->now_ms);
+    argus_to_say(next, ARGUS_EV_TURN_BLOCKED, argus_guard_barring(&guard), argus_guard_nearest_mm(&guard, 0));
     argus_to_check(next, true);
     next->stop = ARGUS_STOP_STOP;
 }
 
-static void begin_looks(argus_t *const self, const argus_intent_t *const intent, argus_intent_t *const next) {
+static void say_looks(const argus_t *const self, argus_events_t *const events, const argus_mask_t sonars) {
     ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
     ARGUS_ASSERT(self->mode == ARGUS_MODE_VERIFYING && self->verifying.inquiry.active);
     for (int i = 0; i < self->knowledge.sonars; i++) {
-        if ((intent->sonars >> i & 1u) != 0) {
-            argus_say(self, ARGUS_EV_SONAR_VERIFYING, i, self->knowledge.sonar[i].reading_mm);
+        if ((sonars >> i & 1u) != 0) {
+            argus_emit_of(events, ARGUS_EV_SONAR_VERIFYING, i, self->knowledge.sonar[i].reading_mm);
         }
     }
-    if (intent->sonars == 0) {
-        argus_tell(self, ARGUS_EV_LOOK, 0);
+    if (sonars == 0) {
+        argus_emit(events, ARGUS_EV_LOOK, 0);
     }
-    turn(self, intent->cdeg, next);
 }
 
 static void lose(argus_t *const self, const argus_intent_t *const intent, argus_intent_t *const next) {
-    ARGUS_ASSERT(intent->act <= ARGUS_DO_REACH);
+    const argus_knowledge_t *const knowledge = &self->knowledge;
     ARGUS_ASSERT((intent->sonars | intent->silent) != 0);
-    argus_lose(self, intent->sonars, intent->silent);
+    ARGUS_ASSERT(((intent->sonars | intent->silent) & argus_out(knowledge)) == 0);
+    for (int i = 0; i < knowledge->sonars; i++) {
+        if ((intent->sonars >> i & 1u) != 0) {
+            argus_emit_of(&self->events, ARGUS_EV_SONAR_DEAD, i, knowledge->sonar[i].reading_mm);
+            argus_disable(self, i, ARGUS_KIND_OFF);
+        } else if ((intent->silent >> i & 1u) != 0) {
+            const uint32_t age_ms = argus_age_ms(knowledge, i, self->now_ms);
+            argus_emit_of(&self->events, ARGUS_EV_SONAR_SILENT, i, (int32_t)(age_ms & 0x7FFFFFFFu));
+            argus_disable(self, i, ARGUS_KIND_SILENT);
+        }
+    }
     const bool stays = self->mode == ARGUS_MODE_WAITING || self->mode == ARGUS_MODE_CLOSING;
     next->act = stays ? ARGUS_DO_NOTHING : ARGUS_DO_CHECK;
 }
 
-static void reach(argus_t *const self, argus_intent_t *const next) {
-    ARGUS_ASSERT(self->mission == ARGUS_MISSION_RUNNING);
-    if (argus_slip_denies(&self->slip, &self->knowledge)) { // the reflex tells it
-        argus_knowledge_set_back(&self->knowledge, &self->slip.first);
+static void reach(const argus_task_t *const task, argus_mission_t *const mission, argus_slip_t *const slip,
+                  argus_knowledge_t *const knowledge, argus_intent_t *const next) {
+    ARGUS_ASSERT(*mission == ARGUS_MISSION_RUNNING);
+    if (argus_slip_denies(slip, knowledge)) { // the reflex tells it
+        argus_knowledge_set_back(knowledge, &slip->first);
         argus_to_check(next, true);
         return;
     }
-    self->mission = ARGUS_MISSION_REACHED;
-    argus_tell(self, ARGUS_EV_GOAL_REACHED, argus_task_goal_mm(&self->travel.task, &self->knowledge));
+    *mission = ARGUS_MISSION_REACHED;
+    argus_to_say(next, ARGUS_EV_GOAL_REACHED, ARGUS_NO_SONAR, argus_task_goal_mm(task, knowledge));
     next->act = ARGUS_DO_DECIDE;
 }
 
-static void stop(argus_t *const self, const argus_stop_t how) {
+static void stop_as(argus_t *const self, const argus_stop_t how) {
     ARGUS_ASSERT(how <= ARGUS_STOP_E_STOP);
-    switch (how) {
-    case ARGUS_STOP_HALT:
-        argus_halt(self);
-        break;
-    case ARGUS_STOP_STOP:
-        argus_stop(self, ARCOS_CMD_STOP);
-        break;
-    case ARGUS_STOP_E_STOP:
-        argus_stop(self, ARCOS_CMD_E_STOP);
-        break;
-    case ARGUS_STOP_NONE:
-    default:
-        break;
+    const bool halts = how == ARGUS_STOP_HALT && argus_is_to_halt(self);
+    if (halts || how == ARGUS_STOP_STOP) {
+        stop(self, ARCOS_CMD_STOP);
+    } else if (how == ARGUS_STOP_E_STOP) {
+        stop(self, ARCOS_CMD_E_STOP);
     }
 }
 
@@ -313,23 +344,15 @@ static bool met_ahead(const argus_t *const self, const argus_contact_t how) {
     return how == ARGUS_CONTACT_AHEAD || (how == ARGUS_CONTACT_BUMPER && self->knowledge.bumpers_front != 0);
 }
 
-static void close_way(argus_t *const self, const argus_intent_t *const intent) {
+static void close_way(const argus_t *const self, argus_echoes_t *const echoes, argus_travel_t *const travel,
+                      const argus_intent_t *const intent) {
     ARGUS_ASSERT(intent->act <= ARGUS_DO_REACH);
     ARGUS_ASSERT(intent->way <= ARGUS_WAY_FORGIVE);
-    argus_echoes_met(&self->echoes, &self->knowledge, (argus_contact_t)intent->met);
-    if (met_ahead(self, (argus_contact_t)intent->met)) {
-        argus_common_touched(&self->common, argus_robot_ahead(self->knowledge.robot));
-    }
-    switch ((argus_way_t)intent->way) {
-    case ARGUS_WAY_REFUSE:
-        argus_journey_refuse(&self->travel, &self->knowledge, &self->echoes);
-        break;
-    case ARGUS_WAY_FORGIVE:
-        argus_grid_fade(&self->echoes.grid);
-        break;
-    case ARGUS_WAY_KEEP:
-    default:
-        break;
+    argus_echoes_met(echoes, &self->knowledge, (argus_contact_t)intent->met);
+    if (intent->way == ARGUS_WAY_REFUSE) {
+        argus_journey_refuse(travel, &self->knowledge, echoes);
+    } else if (intent->way == ARGUS_WAY_FORGIVE) {
+        argus_grid_fade(&echoes->grid);
     }
 }
 
@@ -354,10 +377,13 @@ static void take_base(argus_base_t *const base, const int32_t heading_cdeg, cons
 static void prepare(argus_t *const self, const argus_intent_t *const intent) {
     ARGUS_ASSERT(intent->act <= ARGUS_DO_REACH);
     if (intent->event != 0) {
-        argus_say(self, (argus_event_id_t)intent->event, intent->sonar, intent->value);
+        argus_emit_of(&self->events, (argus_event_id_t)intent->event, intent->sonar, intent->value);
     }
-    stop(self, (argus_stop_t)intent->stop);
-    close_way(self, intent);
+    stop_as(self, (argus_stop_t)intent->stop);
+    close_way(self, &self->echoes, &self->travel, intent);
+    if (met_ahead(self, (argus_contact_t)intent->met)) {
+        argus_common_touched(&self->common, argus_robot_ahead(self->knowledge.robot));
+    }
     self->checked = self->checked && !intent->unchecked;
     take_base(&self->base, self->knowledge.pose.heading_cdeg, (argus_base_do_t)intent->base);
 }
@@ -367,10 +393,10 @@ static void perform_motion(argus_t *const self, const argus_intent_t *const inte
     ARGUS_ASSERT(intent->act != ARGUS_DO_NOTHING);
     switch ((argus_act_t)intent->act) {
     case ARGUS_DO_HOLD:
-        argus_hold(self);
+        argus_motion_hold(&self->motion, self->now_ms);
         break;
     case ARGUS_DO_BRAKE:
-        argus_brake(self);
+        argus_motion_stop(&self->motion, &self->session.outbox, self->now_ms);
         break;
     case ARGUS_DO_TURN:
         turn(self, intent->cdeg, next);
@@ -384,10 +410,10 @@ static void perform_motion(argus_t *const self, const argus_intent_t *const inte
         back(self, intent);
         break;
     case ARGUS_DO_ENABLE:
-        argus_enable_motors(self);
+        argus_enable_motors(self, &self->session.outbox);
         break;
     case ARGUS_DO_END_TURN:
-        end_turn(self, intent->at, next);
+        end_turn(self, &self->echoes, intent->at, next);
         break;
     default:
         break;
@@ -397,7 +423,7 @@ static void perform_motion(argus_t *const self, const argus_intent_t *const inte
 static void perform_end(argus_t *const self, const argus_act_t act, argus_intent_t *const next) {
     switch (act) {
     case ARGUS_DO_GIVE_UP:
-        fail_mission(self);
+        fail_mission(self, &self->mission, &self->events);
         argus_to_check(next, true);
         break;
     case ARGUS_DO_GO_OFFLINE:
@@ -453,24 +479,25 @@ static void perform_judgement(argus_t *const self, const argus_intent_t *const i
         argus_apply_verdict(self);
         break;
     case ARGUS_DO_LOOK:
-        begin_looks(self, intent, next);
+        say_looks(self, &self->events, intent->sonars);
+        turn(self, intent->cdeg, next);
         break;
     case ARGUS_DO_LOOKED:
         argus_conclude_looks(self);
         argus_to_check(next, false);
         break;
     case ARGUS_DO_LEAVE_OPEN:
-        argus_leave_open(self, intent->sonars);
+        argus_leave_open(&self->knowledge, &self->algorithm1, &self->events, intent->sonars);
         argus_to_check(next, false);
         break;
     case ARGUS_DO_LOSE:
         lose(self, intent, next);
         break;
     case ARGUS_DO_WATCH:
-        argus_watch(self, intent->sonars);
+        argus_watch(&self->knowledge, &self->events, intent->sonars);
         break;
     case ARGUS_DO_REACH:
-        reach(self, next);
+        reach(&self->travel.task, &self->mission, &self->slip, &self->knowledge, next);
         break;
     default:
         break;
@@ -581,19 +608,10 @@ static bool is_under_way(const argus_t *const self) {
            (waits || self->mode == ARGUS_MODE_CHECKING || argus_mode_may(self->mode, ARGUS_MAY_TRANSLATE));
 }
 
-// A course that cannot begin with this robot is given up; the bar has been told.
-static void watch_bar(argus_t *const self) {
-    if (self->mission == ARGUS_MISSION_RUNNING && self->orders.bar != ARGUS_BAR_NONE && argus_is_open(self)) {
-        fail_mission(self);
-        self->orders.unbegun = true;
-    }
-}
-
-static void watch_course(argus_t *const self) {
-    if (argus_journey_is_hopeless(&self->travel, &self->knowledge, is_under_way(self))) {
-        argus_tell(self, ARGUS_EV_NO_WAY, (int32_t)(self->travel.task.progress.vain_ms / 1000u));
-        argus_stop_and_do(self, ARGUS_STOP_HALT, ARGUS_DO_GIVE_UP, false);
-    }
+// A course that cannot begin with this robot fails; the bar has been reported.
+static bool is_barred(const argus_t *const self) {
+    return self->mission == ARGUS_MISSION_RUNNING && self->orders.bar != ARGUS_BAR_NONE &&
+           argus_is_open(self);
 }
 
 void argus_run_mode(argus_t *const self) {
@@ -606,23 +624,29 @@ void argus_run_mode(argus_t *const self) {
         more = intent.more && self->mode == mode;
     }
     ARGUS_ASSERT(!more);
-    watch_bar(self);
-    watch_course(self);
+    if (is_barred(self)) {
+        fail_mission(self, &self->mission, &self->events);
+        self->orders.unbegun = true;
+    }
+    if (argus_journey_is_hopeless(&self->travel, &self->knowledge, is_under_way(self))) {
+        argus_emit(&self->events, ARGUS_EV_NO_WAY, (int32_t)(self->travel.task.progress.vain_ms / 1000u));
+        argus_stop_and_do(self, ARGUS_STOP_HALT, ARGUS_DO_GIVE_UP, false);
+    }
 }
 
-static void close_when_at_rest(argus_t *const self) {
+static void close_when_at_rest(const argus_t *const self, argus_session_t *const session) {
     ARGUS_ASSERT(self->orders.shutdown);
     const bool rested = argus_at_rest(&self->knowledge) && self->motion.settled;
     const bool overdue = self->now_ms - self->since_ms >= argus_mode_limit_ms(self->mode);
-    const bool leaving = self->session.state == ARGUS_SESSION_LEAVING;
+    const bool leaving = session->state == ARGUS_SESSION_LEAVING;
     if (!leaving && (rested || self->orders.passive || overdue)) {
-        argus_session_leave(&self->session, self->now_ms);
+        argus_session_leave(session, self->now_ms);
     }
 }
 
 void argus_process_mode(argus_t *const self) {
     if (self->mode == ARGUS_MODE_CLOSING) {
-        close_when_at_rest(self);
+        close_when_at_rest(self, &self->session);
     }
     argus_intent_t intent = {0};
     argus_go_on_waiting(self, &self->waiting, &intent);

@@ -4,7 +4,6 @@
 
 #include "knowledge/angle.h"
 #include "supervisor/faults.h"
-#include "supervisor/say.h"
 #include "supervisor/state.h"
 
 #define AGAIN_MM 2000u // driven since the last time
@@ -78,6 +77,6 @@ void argus_turn_about(argus_t *const self) {
     argus_base_drop(&self->base);
     self->checked = false;
     self->plan = argus_plan(other, argus_policy(self), 0, 0);
-    argus_tell(self, ARGUS_EV_REVERSED, other->reversed ? 1 : 0);
+    argus_emit(&self->events, ARGUS_EV_REVERSED, other->reversed ? 1 : 0);
     argus_replan(self);
 }

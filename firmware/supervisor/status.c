@@ -68,7 +68,7 @@ void argus_status(const argus_t *const self, argus_status_t *const status) {
     status->mission = (uint8_t)self->mission;
     status->wait = self->mode == ARGUS_MODE_WAITING ? (uint8_t)self->waiting.why : ARGUS_WAIT_NONE;
     status->bar = (uint8_t)self->orders.bar;
-    status->failure = (uint8_t)self->failure;
+    status->failure = self->events.state;
     status->plan = self->plan;
     status->goal_mm = argus_task_goal_mm(&self->travel.task, &self->knowledge);
     status->waypoint = self->travel.task.next;
@@ -153,7 +153,7 @@ static bool health_holds(const argus_t *const self) {
             return false;
         }
     }
-    return argus_failure_of(self->knowledge.robot, argus_out(&self->knowledge)) == self->failure;
+    return argus_failure_of(self->knowledge.robot, argus_out(&self->knowledge)) == self->events.state;
 }
 
 int argus_invariants_broken(const argus_t *const self) {

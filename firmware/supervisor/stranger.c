@@ -9,7 +9,6 @@
 #include "supervisor/journey.h"
 #include "supervisor/looks.h"
 #include "supervisor/modes.h"
-#include "supervisor/say.h"
 
 // Which body it has is found out when its session opens; until then the one before holds.
 static void forget(argus_t *const self) {
@@ -33,7 +32,7 @@ static void forget(argus_t *const self) {
 }
 
 void argus_meet_stranger(argus_t *const self) {
-    argus_tell(self, ARGUS_EV_OTHER_ROBOT, self->session.differs);
+    argus_emit(&self->events, ARGUS_EV_OTHER_ROBOT, self->session.differs);
     // It may still do what an earlier client asked.
     argus_stop_and_do(self, ARGUS_STOP_STOP, ARGUS_DO_NOTHING, false);
     self->orders.passive = true;

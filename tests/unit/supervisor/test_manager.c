@@ -37,7 +37,7 @@ static void ask(argus_op_t op, int32_t argument) {
 void test_cold_start_reaches_idle(void) {
     start_idle();
     TEST_ASSERT_EQUAL(1, robot_count_events(&robot, ARGUS_EV_HEALTH_CHECK, 0));
-    TEST_ASSERT_EQUAL(ARGUS_IS_NORMAL, robot.argus.failure);
+    TEST_ASSERT_EQUAL(ARGUS_IS_NORMAL, robot.argus.events.state);
     TEST_ASSERT_EQUAL(0, robot_count_commands(&robot, ARCOS_CMD_MOVE, 0));
     TEST_ASSERT_EQUAL(0, robot_count_commands(&robot, ARCOS_CMD_HEAD, 0));
     for (int i = 1; i <= 6; i++) {

@@ -91,7 +91,7 @@ void test_with_none_left_it_stops_says_so_and_stands(void) {
         lose_all_on_the_way(ways[k]);
         snprintf(text, sizeof text, "fault %d: mode %d", (int)ways[k], (int)robot.argus.mode);
         TEST_ASSERT_TRUE_MESSAGE(until_blind(30000), text);
-        TEST_ASSERT_EQUAL(ARGUS_IS_CATASTROPHIC, robot.argus.failure);
+        TEST_ASSERT_EQUAL(ARGUS_IS_CATASTROPHIC, robot.argus.events.state);
         TEST_ASSERT_EQUAL(1, robot_count_events(&robot, ARGUS_EV_MISSION_FAILED, 0));
         robot_run(&robot, 2000);
         const double x = robot.x;

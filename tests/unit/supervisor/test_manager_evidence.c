@@ -363,7 +363,8 @@ static bool comes_back(int agreed) {
     argus_sonar_t *sonar = &robot.argus.knowledge.sonar[3];
     put_health(sonar, ARGUS_PROBATION, ARGUS_KIND_OFF, robot.argus.now_ms - 600000);
     robot.argus.evidence.of[3].agreed = (uint8_t)agreed;
-    robot.argus.failure = argus_failure_of(robot.argus.knowledge.robot, argus_out(&robot.argus.knowledge));
+    robot.argus.events.state =
+        (uint8_t)argus_failure_of(robot.argus.knowledge.robot, argus_out(&robot.argus.knowledge));
     robot_next_sip(&robot); // at rest nothing new is compared
     return health(3) == ARGUS_HEALTHY;
 }
@@ -814,7 +815,7 @@ void test_who_is_passed_over_by_new_orders_is_not_silent(void) {
         robot_run(&robot, 2000);
         robot.fault[sonar] = ROBOT_SILENT;
         for (int i = 0; i < 10; i++) {
-            argus_share_slots(&robot.argus);
+            argus_share_slots(&robot.argus, &robot.argus.session.outbox, &robot.argus.firing);
             robot_run(&robot, 500);
         }
         TEST_ASSERT_EQUAL_MESSAGE(sonar == 8, is_disabled(sonar),

@@ -62,7 +62,7 @@ void test_dead_at_the_start(void) {
         TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_GOAL_REACHED, 90000));
         expect_health(sonar, ARGUS_DISABLED, ARGUS_KIND_OFF);
         expect_others_healthy((uint16_t)(1u << sonar));
-        TEST_ASSERT_EQUAL(ARGUS_IS_MINOR, robot.argus.failure);
+        TEST_ASSERT_EQUAL(ARGUS_IS_MINOR, robot.argus.events.state);
         finish();
     }
 }
@@ -253,7 +253,7 @@ void test_all_six_dead_is_catastrophic_and_ends_the_mission(void) {
         robot.fault[i] = ROBOT_OFF;
     }
     TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_MISSION_FAILED, 10000));
-    TEST_ASSERT_EQUAL(ARGUS_IS_CATASTROPHIC, robot.argus.failure);
+    TEST_ASSERT_EQUAL(ARGUS_IS_CATASTROPHIC, robot.argus.events.state);
     TEST_ASSERT_EQUAL(ARGUS_MISSION_FAILED, robot.argus.mission);
     const int from = robot.commands;
     robot_run(&robot, 30000);

@@ -146,7 +146,7 @@ void test_what_was_known_of_the_first_one_is_forgotten(void) {
     robot_run(&robot, 10000);
     TEST_ASSERT_EQUAL_INT(0, robot_count_commands(&robot, ARCOS_CMD_POLLING, from));
     TEST_ASSERT_EQUAL_INT(ARGUS_HEALTHY, robot.argus.knowledge.sonar[3].health);
-    TEST_ASSERT_EQUAL_INT(ARGUS_IS_NORMAL, robot.argus.failure);
+    TEST_ASSERT_EQUAL_INT(ARGUS_IS_NORMAL, robot.argus.events.state);
     TEST_ASSERT_EQUAL_INT(0, robot.argus.plan.disabled);
     TEST_ASSERT_EQUAL_INT(0, motions());
 }
