@@ -508,3 +508,27 @@ int32_t argus_nearest_to_centre_mm(const argus_knowledge_t *const self, const in
     }
     return nearest;
 }
+
+argus_mask_t argus_living(const argus_knowledge_t *const self, const uint32_t stale_ms,
+                          const uint32_t now_ms) {
+    unsigned trusted = 0;
+    unsigned named = 0;
+    for (int i = 0; i < self->sonars; i++) {
+        const bool late = argus_age_ms(self, i, now_ms) > stale_ms;
+        const bool heard = !late && self->sonar[i].health != ARGUS_STALE && !argus_is_out(self, i);
+        trusted |= heard && argus_trusted(self, i) ? 1u << i : 0u;
+        named |= heard && !argus_trusted(self, i) ? 1u << i : 0u;
+    }
+    return (argus_mask_t)(trusted != 0 ? trusted : named);
+}
+
+int argus_nearest_ahead(const argus_knowledge_t *const self) {
+    int nearest = -1;
+    for (int i = 0; i < self->sonars; i++) {
+        if (argus_counts_ahead(self, i) && self->sonar[i].reported && !argus_is_out(self, i) &&
+            (nearest < 0 || argus_reading_ahead_mm(self, i) < argus_reading_ahead_mm(self, nearest))) {
+            nearest = i;
+        }
+    }
+    return nearest;
+}

@@ -132,6 +132,13 @@ argus_mask_t argus_named(const argus_knowledge_t *self);      // SUSPECT, with t
 bool argus_trusted(const argus_knowledge_t *self, int sonar); // neither out nor named nor unheard
 bool argus_usable(const argus_knowledge_t *self, int sonar);  // reported, not out, not 5000
 
+// Which may be relied on to look along another's bearing: none that is out or unheard. One with the name of a
+// fault may only where no other is left.
+argus_mask_t argus_living(const argus_knowledge_t *self, uint32_t stale_ms, uint32_t now_ms);
+
+// Of the sonars in use that look ahead the one that reads least; -1: none.
+int argus_nearest_ahead(const argus_knowledge_t *self);
+
 // A reading as it counts for the way: of one that looks ahead from an upper deck what it would be at the
 // faces of those that face forward, since it stands behind them.
 int32_t argus_reading_ahead_mm(const argus_knowledge_t *self, int sonar);

@@ -3,15 +3,17 @@
 #ifndef ARGUS_CORE_H
 #define ARGUS_CORE_H
 
+#include "adjustment/base.h"
 #include "adjustment/drive.h"
+#include "adjustment/firing.h"
 #include "adjustment/motion.h"
 #include "adjustment/pace.h"
 #include "adjustment/plan.h"
 #include "adjustment/trim.h"
 #include "adjustment/weave.h"
 #include "analysis/inquiry.h"
+#include "analysis/looked.h"
 #include "analysis/verify.h"
-#include "arcos/roundtrip.h"
 #include "arcos/session.h"
 #include "argus/argus.h"
 #include "awareness/alarms.h"
@@ -19,13 +21,13 @@
 #include "awareness/extremes.h"
 #include "knowledge/bend.h"
 #include "knowledge/config.h"
+#include "knowledge/events.h"
 #include "knowledge/knowledge.h"
+#include "knowledge/latency.h"
 #include "knowledge/profile.h"
 #include "knowledge/rays.h"
 #include "knowledge/slip.h"
 #include "paper/algorithm1.h"
-#include "supervisor/base.h"
-#include "supervisor/events.h"
 #include "task/task.h"
 
 // CHECKING.
@@ -79,20 +81,6 @@ typedef struct {
     bool valid;
 } argus_near_t;
 
-// How late the link is; all zero: nothing is late.
-typedef struct {
-    argus_roundtrip_t trip;
-    int32_t late_ms;   // beyond what S5 counts on anyway: of late the most
-    int32_t before_ms; // ... in the last SIP
-    int32_t most_ms;   // ... since some SIPs, and in as many before those
-    int32_t then_ms;
-    uint8_t sips;
-    uint8_t level;     // said last: 0 prompt, 1 slower, 2 stands
-    uint8_t calm_sips; // in a row with nothing overdue
-    bool overdue;      // an order that was sent has not shown yet: no new motion
-    bool stands;
-} argus_latency_t;
-
 // What the reflexes remember.
 typedef struct {
     uint8_t unsound;      // leaps and slips of the odometry, one soon after the other
@@ -111,31 +99,6 @@ typedef struct {
     uint32_t unsound_ms;  // a leap or slip of the odometry, the last one
     argus_near_t near[2]; // the last echoes within the swing circle in a turn, right and left
 } argus_reflexes_t;
-
-// Looks (profile argus) and checks. A sonar that was cleared is not looked at again for a while.
-typedef struct {
-    uint32_t odometer_mm;
-    uint8_t cleared;
-    uint8_t borne_out; // looks in a row that left it its name
-    bool lawless;      // it was named slow, and then wrong after all
-} argus_hold_t;
-
-// The kind that the evidence gives it, and since when.
-typedef struct {
-    uint32_t since_ms;
-    uint8_t named;
-} argus_naming_t;
-
-typedef struct {
-    uint32_t check_ms; // a health check
-    uint32_t lost_ms;  // what doubt has cost since the last look: time, against the speed without
-    uint8_t settling;  // looks at the goal
-    bool asked;        // an operator wants a look
-    bool tried;        // in this session, since those ahead had heard nothing and others had
-    bool unheard_said; // likewise
-    argus_hold_t hold[ARGUS_SONARS];
-    argus_naming_t naming[ARGUS_SONARS];
-} argus_looks_t;
 
 // The last change of the leading end.
 typedef struct {
@@ -161,12 +124,6 @@ typedef struct {
     uint8_t stay; // after a STOP: no turn either, until another order; by whom and whom, ARGUS_STAY_
     bool shutdown;
 } argus_orders_t;
-
-// The sonars fire in an order of ours, in this session, begun anew at `ordered_ms`.
-typedef struct {
-    bool ordered;
-    uint32_t ordered_ms;
-} argus_firing_t;
 
 // The record of earlier missions.
 typedef struct {

@@ -8,44 +8,10 @@
 #include "supervisor/journey.h"
 #include "supervisor/state.h"
 
-// The forward-facing sonars in use, and every other one of the rest of their arrays: these watch the swing
-// circle.
-static size_t add_half(const argus_t *const self, const int half, uint8_t *const order) {
-    ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
-    ARGUS_ASSERT(half == 0 || half == 1);
-    const argus_robot_t *const robot = self->knowledge.robot;
-    const unsigned others = argus_robot_polled(robot) & ~(unsigned)argus_robot_forward(robot);
-    size_t count = 0;
-    int other = 0;
-    for (int i = 0; i < self->knowledge.sonars; i++) {
-        if (argus_robot_faces_forward(robot, i) && !argus_is_out(&self->knowledge, i)) {
-            order[count++] = (uint8_t)(i + 1);
-        }
-    }
-    for (int i = 0; i < self->knowledge.sonars; i++) {
-        if ((others >> i & 1u) != 0 && other++ % 2 == half) {
-            order[count++] = (uint8_t)(i + 1);
-        }
-    }
-    return count;
-}
-
-// In failure mode the slots of the sonars that are out go to those that look ahead.
 void argus_share_slots(const argus_t *const self, argus_outbox_t *const out, argus_firing_t *const firing) {
-    if (!argus_is_active(self) || !argus_is_open(self)) {
-        return;
+    if (argus_is_active(self) && argus_is_open(self)) {
+        argus_firing_share(firing, &self->knowledge, argus_rules(self)->evidence != 0, out, self->now_ms);
     }
-    uint8_t order[ARCOS_TIMING_ARRAYS_MAX * ARCOS_TIMING_POLLING_MAX_PER_ARRAY];
-    size_t count = add_half(self, 0, order);
-    count += add_half(self, 1, order + count);
-    for (int i = 0; argus_rules(self)->evidence && i < self->knowledge.sonars; i++) {
-        if (argus_robot_faces_forward(self->knowledge.robot, i) && argus_is_out(&self->knowledge, i)) {
-            order[count++] = (uint8_t)(i + 1); // its own slot, to show that it does well again
-        }
-    }
-    ARGUS_ASSERT(count <= sizeof order);
-    argus_outbox_string(out, ARCOS_CMD_POLLING, order, count);
-    *firing = (argus_firing_t){.ordered = true, .ordered_ms = self->now_ms};
 }
 
 static void emit_plan(argus_events_t *const events, const argus_plan_t *const before,
@@ -61,19 +27,8 @@ static void emit_plan(argus_events_t *const events, const argus_plan_t *const be
     }
 }
 
-// Which may be relied on to look along another's bearing: none that is out or unheard. One with the name of a
-// fault may only where no other is left.
 static argus_mask_t living(const argus_t *const self) {
-    const argus_knowledge_t *const knowledge = &self->knowledge;
-    unsigned trusted = 0;
-    unsigned named = 0;
-    for (int i = 0; i < knowledge->sonars; i++) {
-        const bool late = argus_age_ms(knowledge, i, self->now_ms) > (uint32_t)self->config.stale_ms;
-        const bool heard = !late && knowledge->sonar[i].health != ARGUS_STALE && !argus_is_out(knowledge, i);
-        trusted |= heard && argus_trusted(knowledge, i) ? 1u << i : 0u;
-        named |= heard && !argus_trusted(knowledge, i) ? 1u << i : 0u;
-    }
-    return (argus_mask_t)(trusted != 0 ? trusted : named);
+    return argus_living(&self->knowledge, (uint32_t)self->config.stale_ms, self->now_ms);
 }
 
 // Suspects that are covered for like those that are out. Under profile argus these are the named ones that no

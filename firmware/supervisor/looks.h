@@ -36,30 +36,4 @@ void argus_leave_open(const argus_knowledge_t *knowledge, argus_algorithm1_t *al
 
 // What is remembered of looks; looks.c is its only writer ---------------------------------------------------
 
-void argus_looks_init(argus_looks_t *self);
-
-// A session opened; a health check was made; the robot is to drive on.
-void argus_looks_open(argus_looks_t *self);
-void argus_looks_checked(argus_looks_t *self, uint32_t now_ms);
-void argus_looks_leave(argus_looks_t *self);
-
-// Looks begin; `arriving`: at a goal. They are those of argus_to_try().
-void argus_looks_begin(argus_looks_t *self, bool arriving);
-void argus_looks_tried(argus_looks_t *self);
-
-// No sonar ahead has heard an echo: whether that is new in this session.
-bool argus_looks_unheard(argus_looks_t *self);
-
-// An operator wants a look, which comes with the next check: that the sonar was cleared is forgotten.
-void argus_looks_ask(argus_looks_t *self, int sonar);
-
-// Whether the evidence has named this kind for a while.
-bool argus_looks_stands(argus_looks_t *self, int sonar, argus_fault_kind_t kind, uint32_t now_ms);
-
-// It is no suspect any more: what names and looks have shown of it is forgotten.
-void argus_looks_forget(argus_looks_t *self, int sonar);
-
-// A suspect gets another name.
-void argus_looks_rename(argus_looks_t *self, int sonar, argus_fault_kind_t from, argus_fault_kind_t to);
-
 #endif

@@ -8,15 +8,15 @@
 #include "knowledge/angle.h"
 #include "knowledge/body.h"
 #include "knowledge/config.h"
+#include "knowledge/observe.h"
 #include "supervisor/body.h"
 #include "supervisor/faults.h"
 #include "supervisor/history.h"
 #include "supervisor/journey.h"
-#include "supervisor/latency.h"
 #include "supervisor/looks.h"
+#include "supervisor/mode.h"
 #include "supervisor/modes.h"
 #include "supervisor/motions.h"
-#include "supervisor/observe.h"
 #include "supervisor/orders.h"
 #include "supervisor/state.h"
 #include "supervisor/stranger.h"
@@ -217,16 +217,25 @@ static void take_evidence(argus_t *const self) {
     take_pace(self, &self->pace, &self->session.setup, &self->events);
 }
 
-// How late the link is, before anything of the SIP is used.
-static void take_latency(argus_t *const self) {
-    argus_intent_t intent = {0};
-    argus_roundtrip_sip(&self->latency.trip, &self->session, &self->config, self->now_ms);
-    const bool goes_on = argus_latency_sip(self, &self->latency, &self->events, &intent);
-    argus_do(self, &intent);
-    self->motion.late_ms = (uint32_t)self->latency.late_ms;
-    if (goes_on) {
+// The check that follows does not begin before the link is prompt.
+static void take_lateness(argus_t *const self, const argus_lateness_t news) {
+    const bool may = argus_mode_may(self->mode, ARGUS_IN_SESSION) && self->mode != ARGUS_MODE_WAITING;
+    if (news == ARGUS_LATE_AS_BEFORE) {
+        return;
+    }
+    self->checked = self->checked && news != ARGUS_LATE_STANDS;
+    argus_stop_and_do(self, news == ARGUS_LATE_STANDS ? ARGUS_STOP_STOP : ARGUS_STOP_HALT,
+                      may ? ARGUS_DO_CHECK : ARGUS_DO_NOTHING, true);
+    if (news == ARGUS_LATE_GOES_ON) {
         restart_evidence(self);
     }
+}
+
+// How late the link is, before anything of the SIP is used.
+static void take_latency(argus_t *const self) {
+    argus_roundtrip_sip(&self->latency.trip, &self->session, &self->config, self->now_ms);
+    take_lateness(self, argus_latency_sip(&self->latency, &self->config, &self->events));
+    self->motion.late_ms = (uint32_t)self->latency.late_ms;
     self->knowledge.late_ms = (uint32_t)argus_latency_oldest_ms(&self->latency);
 }
 
@@ -359,9 +368,9 @@ uint32_t argus_process(argus_t *const self, const uint32_t now_ms) {
         }
         handle(self, bits);
     }
-    argus_intent_t intent = {0};
-    argus_latency_process(self, &self->latency, &self->events, &intent);
-    argus_do(self, &intent);
+    if (argus_is_open(self)) {
+        take_lateness(self, argus_latency_process(&self->latency, &self->config, &self->events));
+    }
     argus_process_mode(self);
     keep_orders(self, &self->session, &self->firing, &self->events);
     const int broken = argus_invariants_broken(self);

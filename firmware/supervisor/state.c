@@ -90,19 +90,6 @@ bool argus_is_hemmed_in(const argus_t *const self) {
            !argus_guard_may_turn(&guard) && !argus_guard_may_back_off(&guard);
 }
 
-int argus_nearest_ahead(const argus_t *const self) {
-    const argus_knowledge_t *const knowledge = &self->knowledge;
-    int nearest = -1;
-    for (int i = 0; i < knowledge->sonars; i++) {
-        if (argus_counts_ahead(knowledge, i) && knowledge->sonar[i].reported && !argus_is_out(knowledge, i) &&
-            (nearest < 0 ||
-             argus_reading_ahead_mm(knowledge, i) < argus_reading_ahead_mm(knowledge, nearest))) {
-            nearest = i;
-        }
-    }
-    return nearest;
-}
-
 void argus_turn_failed(const argus_t *const self, argus_intent_t *const intent) {
     ARGUS_ASSERT(self->motion.failed);
     const int32_t off_cdeg =

@@ -39,9 +39,6 @@ argus_mask_t argus_open_suspects(const argus_t *self);
 // On its course, and has waited in vain to turn or to back away.
 bool argus_is_hemmed_in(const argus_t *self);
 
-// Of the sonars in use that look ahead the one that reads least; -1: none.
-int argus_nearest_ahead(const argus_t *self);
-
 // True when the robot stands on the base heading, which is then taken. Else what leads there is in `intent`.
 // `again`: an echo that forbade to turn has been read once more.
 bool argus_is_home(const argus_t *self, bool again, argus_intent_t *intent);

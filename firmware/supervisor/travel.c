@@ -134,7 +134,7 @@ static int32_t reading_of(const argus_t *const self, const int sonar) {
 }
 
 static bool is_barred_ahead(const argus_t *const self, const argus_guard_t *const guard) {
-    const int32_t heard_mm = reading_of(self, argus_nearest_ahead(self));
+    const int32_t heard_mm = reading_of(self, argus_nearest_ahead(&self->knowledge));
     return argus_min(heard_mm, argus_guard_touched_mm(guard)) <= self->config.object_range_mm;
 }
 
@@ -333,7 +333,7 @@ static void drive_on(const argus_t *const self, const argus_guard_t *const guard
     if (!argus_guard_sees_ahead(guard)) {
         return; // the MOVE at work ends by itself
     }
-    const int sonar = argus_nearest_ahead(self);
+    const int sonar = argus_nearest_ahead(&self->knowledge);
     const int32_t nearest_mm = reading_of(self, sonar);
     if (nearest_mm <= self->config.object_range_mm) {
         blocked(mine, ARGUS_EV_OBJECT, sonar, nearest_mm, intent);
@@ -411,7 +411,7 @@ static void end_way(argus_intent_t *const intent) {
 // The sweep is done and the robot is back on its heading: the compensating and the direct readings decide.
 static void judge_sweep(const argus_t *const self, const argus_guard_t *const guard,
                         argus_travel_t *const mine, argus_intent_t *const intent) {
-    const int direct = argus_nearest_ahead(self);
+    const int direct = argus_nearest_ahead(&self->knowledge);
     const int32_t direct_mm = reading_of(self, direct);
     if (!mine->swept) {
         mine->swept = true;

@@ -42,7 +42,7 @@ def test_a_unit_that_the_catalogue_words_is_printed(name: str) -> None:
 
 
 def test_the_orders_are_those_of_the_core() -> None:
-    text = (ROOT / "firmware/supervisor/names.c").read_text(encoding="utf-8")
+    text = (ROOT / "firmware/knowledge/words.c").read_text(encoding="utf-8")
     assert "\\0".join(OPERATIONS) + "\\0" in text
 
 

@@ -37,12 +37,12 @@ def test_algorithm_1_alone_writes_what_it_counts() -> None:
 
 
 def test_base_c_alone_writes_the_heading_to_return_to() -> None:
-    assert writers("taken") == {"supervisor/base.c"}
+    assert writers("taken") == {"adjustment/base.c"}
 
 
-def test_looks_c_alone_writes_what_is_remembered_of_looks() -> None:
+def test_looked_c_alone_writes_what_is_remembered_of_looks() -> None:
     for field in ("check_ms", "lost_ms", "settling", "tried", "unheard_said", "cleared", "lawless"):
-        assert writers(field) == {"supervisor/looks.c"}, field
+        assert writers(field) == {"analysis/looked.c"}, field
 
 
 def test_one_finding_of_a_sonar_is_asked_for() -> None:

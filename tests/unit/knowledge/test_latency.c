@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rule: a link that gets late stops the robot before it has driven on what was, and a link that is prompt
 // again is believed soon: not before a time without delay, nor half a minute after it.
-#include "supervisor/latency.h"
+#include "knowledge/latency.h"
 
 #include "robot.h"
 #include "unity.h"

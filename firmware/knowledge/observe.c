@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a robot without ARCOS says of itself, as a SIP.
-#include "supervisor/observe.h"
+#include "knowledge/observe.h"
 
 #include <string.h>
 

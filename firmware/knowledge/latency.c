@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Judges how late the link is.
-#include "supervisor/latency.h"
+#include "knowledge/latency.h"
 
 #include "knowledge/angle.h"
-#include "supervisor/mode.h"
-#include "supervisor/state.h"
 
 #define CYCLE_MS ARCOS_TIMING_SIP_CYCLE_MS
 #define OVERDUE_MS 150 // beyond what is expected: STOP
@@ -24,10 +22,10 @@ void argus_latency_open(argus_latency_t *const mine, const bool has_robot) {
 }
 
 // Beyond what it is on a link without delay, to a cycle less.
-static int32_t beyond_ms(const argus_t *const self) {
-    const argus_roundtrip_t *const trip = &self->latency.trip;
+static int32_t beyond_ms(const argus_latency_t *const self, const argus_config_t *const config,
+                         const uint32_t now_ms) {
     const int32_t beyond =
-        argus_roundtrip_ms(trip, self->now_ms) - argus_roundtrip_usual_ms(trip, &self->config);
+        argus_roundtrip_ms(&self->trip, now_ms) - argus_roundtrip_usual_ms(&self->trip, config);
     return argus_between(0, LATE_MOST_MS, beyond);
 }
 
@@ -48,26 +46,16 @@ static uint8_t level_of(const argus_latency_t *const mine) {
                                                                                   : LEVEL_PROMPT;
 }
 
-// What follows is a check; it does not begin before the link is prompt.
-static void check(const argus_t *const self, const argus_stop_t stop, argus_intent_t *const intent) {
-    const bool may = argus_mode_may(self->mode, ARGUS_IN_SESSION) && self->mode != ARGUS_MODE_WAITING;
-    intent->stop = (uint8_t)stop;
-    intent->act = may ? ARGUS_DO_CHECK : ARGUS_DO_NOTHING;
-    intent->full = true;
-}
-
-// Whatever moves is stopped.
-static void judge(const argus_t *const self, argus_latency_t *const mine, argus_events_t *const events,
-                  argus_intent_t *const intent) {
-    const int32_t beyond = beyond_ms(self);
+static argus_lateness_t judge(argus_latency_t *const mine, argus_events_t *const events,
+                              const int32_t beyond) {
     const bool stands = beyond > mine->late_ms + OVERDUE_MS || mine->late_ms > STANDS_MS;
-    if (stands && !mine->stands) {
-        mine->stands = true;
-        mine->calm_sips = 0;
-        emit(mine, events, LEVEL_STANDS);
-        intent->unchecked = true;
-        check(self, ARGUS_STOP_STOP, intent);
+    if (!stands || mine->stands) {
+        return ARGUS_LATE_AS_BEFORE;
     }
+    mine->stands = true;
+    mine->calm_sips = 0;
+    emit(mine, events, LEVEL_STANDS);
+    return ARGUS_LATE_STANDS;
 }
 
 // The sight of an order waits for the next SIP, so that it tells of a delay to a cycle. One SIP may be lost.
@@ -85,28 +73,27 @@ static void measure(argus_latency_t *const mine, const int32_t beyond) {
     }
 }
 
-bool argus_latency_sip(const argus_t *const self, argus_latency_t *const mine, argus_events_t *const events,
-                       argus_intent_t *const intent) {
-    const int32_t beyond = beyond_ms(self);
+argus_lateness_t argus_latency_sip(argus_latency_t *const mine, const argus_config_t *const config,
+                                   argus_events_t *const events) {
+    const int32_t beyond = beyond_ms(mine, config, events->now_ms);
     mine->overdue = beyond > mine->late_ms;
-    judge(self, mine, events, intent);
+    argus_lateness_t news = judge(mine, events, beyond);
     measure(mine, beyond);
     const bool calm = !mine->overdue && mine->late_ms <= STANDS_MS;
     mine->calm_sips = (uint8_t)(calm ? argus_min(mine->calm_sips + 1, CALM_SIPS) : 0);
-    const bool goes_on = mine->stands && mine->calm_sips == CALM_SIPS;
-    if (goes_on) { // all that was read meanwhile was late
+    if (mine->stands && mine->calm_sips == CALM_SIPS) {
         mine->stands = false;
-        check(self, ARGUS_STOP_HALT, intent);
+        news = ARGUS_LATE_GOES_ON;
     }
     emit(mine, events, level_of(mine));
-    return goes_on;
+    return news;
 }
 
-void argus_latency_process(const argus_t *const self, argus_latency_t *const mine,
-                           argus_events_t *const events, argus_intent_t *const intent) {
-    if (argus_is_open(self) && argus_roundtrip_is_known(&mine->trip)) {
-        judge(self, mine, events, intent);
-    }
+argus_lateness_t argus_latency_process(argus_latency_t *const mine, const argus_config_t *const config,
+                                       argus_events_t *const events) {
+    return argus_roundtrip_is_known(&mine->trip)
+               ? judge(mine, events, beyond_ms(mine, config, events->now_ms))
+               : ARGUS_LATE_AS_BEFORE;
 }
 
 int32_t argus_latency_oldest_ms(const argus_latency_t *const self) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The event queue.
-#include "supervisor/events.h"
+#include "knowledge/events.h"
 
 void argus_events_push(argus_events_t *self, argus_event_t event) {
     ARGUS_ASSERT(self->count <= ARGUS_EVENT_QUEUE && self->head < ARGUS_EVENT_QUEUE);

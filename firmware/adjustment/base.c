@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Takes a heading to return to, and drops it.
-#include "supervisor/base.h"
+#include "adjustment/base.h"
 
 void argus_base_renew(argus_base_t *const self, const int32_t heading_cdeg) {
     self->cdeg = heading_cdeg;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack: events come out in order, an overflow drops the newest and is counted, the catalogue has
 // no twins.
-#include "supervisor/events.h"
+#include "knowledge/events.h"
 
 #include <ctype.h>
 #include <stddef.h>
