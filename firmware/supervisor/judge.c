@@ -42,10 +42,10 @@ static bool is_kept(const argus_t *const self, const argus_finding_t *const find
 }
 
 // Named in this mission, and in the one before: it gets worse, though looks may have cleared it each time.
-static void warn_of(argus_t *const self, const int sonar, const bool named_before) {
-    const argus_sonar_t *const s = &self->knowledge.sonar[sonar];
+static void warn_of(const argus_sonar_t *const s, argus_events_t *const events, const int sonar,
+                    const bool named_before) {
     if (!named_before && s->missions_named > 0) {
-        argus_emit_of(&self->events, ARGUS_EV_SONAR_DEGRADING, sonar, s->missions_named + 1);
+        argus_emit_of(events, ARGUS_EV_SONAR_DEGRADING, sonar, s->missions_named + 1);
     }
 }
 
@@ -62,7 +62,7 @@ static void name(argus_t *const self, const int sonar, const argus_finding_t *co
         const bool named_before = s->named;
         argus_looks_rename(&self->looks, sonar, s->kind, kind);
         argus_emit_change(&self->events, &self->knowledge, sonar, ARGUS_CHANGE_NAMED, kind, (int32_t)kind);
-        warn_of(self, sonar, named_before);
+        warn_of(s, &self->events, sonar, named_before);
         argus_rays_forget(&self->rays, sonar); // nothing that it has seen is counted on
         argus_replan(self);
     }

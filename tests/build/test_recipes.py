@@ -146,7 +146,7 @@ UNITS = (
     "adjustment.test_plan",
     "knowledge.test_config",
     "robot.test_robot",
-    "supervisor.test_names",
+    "knowledge.test_words",
     "hal.board.test_config",
     "hal.linux.argusd.test_settings",
     "hal.linux.argusd.test_inject",

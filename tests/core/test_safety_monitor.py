@@ -23,7 +23,7 @@ MUTANTS: Final = (
         "no-e-stop",
         "bumper",
         frozenset({21}),
-        (("supervisor/motions.c", r"(?m)^    if \(command == ARCOS_CMD_E_STOP\) \{", "    if (false) {"),),
+        (("supervisor/modes.c", r"(?m)^    if \(command == ARCOS_CMD_E_STOP\) \{", "    if (false) {"),),
     ),
     Mutant(
         "no-stop",
@@ -83,7 +83,7 @@ MUTANTS: Final = (
         frozenset({25}),
         (
             ("supervisor/manager.c", r"(?s)(LINK_STALLED, self->config.link_stall_ms\);\n).*?;", r"\1"),
-            ("supervisor/latency.c", r"if \(stands && !mine->stands\)", "if (false)"),
+            ("knowledge/latency.c", r"if \(!stands \|\| mine->stands\)", "if (stands || !stands)"),
         ),
     ),
     Mutant(
