@@ -3,6 +3,7 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "arcos/frame.h"
 #include "supervisor/manager.h"
 
 size_t argus_shim_core_size(void);
@@ -33,6 +34,9 @@ size_t argus_shim_brief_size(void);
 void argus_shim_brief(const argus_t *core, uint8_t *bytes);
 size_t argus_shim_replay(argus_t *core, const uint32_t *t_ms, const uint16_t *length, size_t packets,
                          const uint8_t *bytes, uint32_t *changes, size_t capacity);
+size_t argus_shim_said_size(void);
+size_t argus_shim_feed(argus_t *core, uint32_t *now_ms, const uint32_t *t_ms, const uint16_t *length,
+                       size_t packets, const uint8_t *data, uint32_t *said, size_t *count);
 
 size_t argus_shim_core_size(void) {
     return sizeof(argus_storage_t);
@@ -338,4 +342,74 @@ size_t argus_shim_replay(argus_t *core, const uint32_t *t_ms, const uint16_t *le
         due_ms = serve(&self, t_ms[i]);
     }
     return self.count;
+}
+
+// A part of a recording at once, for a manager in a session. The data parts of a robot's packets, `length[i]`
+// of `data` each, come at t_ms[i] (none before `*now_ms`, which goes with them). What the manager sends is
+// thrown away; what it reports goes to `said`: the packet's number, the time, then the event's fields. It
+// ends behind the packet that closes the session or leaves no room. Returns how many packets were taken.
+
+#define SAID_ROWS ((size_t)1024)
+#define SAID_FIELDS ((size_t)7)
+
+typedef struct {
+    argus_t *core;
+    uint32_t *said;
+    size_t count;
+    uint32_t packet;
+    uint32_t now_ms;
+} feed_t;
+
+size_t argus_shim_said_size(void) {
+    return SAID_ROWS * SAID_FIELDS;
+}
+
+static void drain(feed_t *const self) {
+    uint8_t packet[UINT8_MAX];
+    int32_t fields[SAID_FIELDS];
+    while (argus_transmit(self->core, packet, sizeof packet) > 0) {
+    }
+    while (self->count < SAID_ROWS && argus_shim_event(self->core, fields)) {
+        uint32_t *const row = &self->said[SAID_FIELDS * self->count++];
+        row[0] = self->packet;
+        row[1] = self->now_ms;
+        memcpy(&row[2], fields, (SAID_FIELDS - 2) * sizeof fields[0]);
+    }
+}
+
+static void feed_packet(feed_t *const self, const uint8_t *const data, const uint16_t length) {
+    uint8_t wire[ARGUS_FRAME_TOTAL_MAX] = {ARCOS_FRAME_HEADER0, ARCOS_FRAME_HEADER1, (uint8_t)(length + 2)};
+    const uint16_t checksum = argus_frame_checksum(data, length);
+    memcpy(&wire[ARCOS_FRAME_OVERHEAD], data, length);
+    wire[ARCOS_FRAME_OVERHEAD + length] = (uint8_t)(checksum >> 8);
+    wire[ARCOS_FRAME_OVERHEAD + length + 1] = (uint8_t)(checksum & UINT8_MAX);
+    argus_receive(self->core, self->now_ms, wire, (size_t)ARCOS_FRAME_OVERHEAD + length + 2);
+    argus_process(self->core, self->now_ms);
+    drain(self);
+}
+
+static void feed_time(feed_t *const self, const uint32_t until_ms) {
+    while ((int32_t)(until_ms - self->now_ms) > 0 && argus_shim_is_open(self->core)) {
+        const uint32_t wait_ms = argus_process(self->core, self->now_ms);
+        const uint32_t left_ms = until_ms - self->now_ms;
+        const uint32_t step_ms = wait_ms > 0 ? wait_ms : 1;
+        self->now_ms += step_ms < left_ms ? step_ms : left_ms;
+        drain(self);
+    }
+}
+
+size_t argus_shim_feed(argus_t *core, uint32_t *now_ms, const uint32_t *t_ms, const uint16_t *length,
+                       size_t packets, const uint8_t *data, uint32_t *said, size_t *count) {
+    feed_t self = {.core = core, .said = said, .now_ms = *now_ms};
+    size_t taken = 0;
+    while (taken < packets && argus_shim_is_open(core) && self.count <= SAID_ROWS / 2) {
+        self.packet = (uint32_t)taken;
+        feed_time(&self, t_ms[taken]);
+        feed_packet(&self, data, length[taken]);
+        data += length[taken];
+        taken++;
+    }
+    *now_ms = self.now_ms;
+    *count = self.count;
+    return taken;
 }

@@ -116,6 +116,20 @@ _FUNCTIONS: Final[dict[str, tuple[Any, tuple[Any, ...]]]] = {
             ctypes.c_size_t,
         ),
     ),
+    "argus_shim_said_size": (ctypes.c_size_t, ()),
+    "argus_shim_feed": (
+        ctypes.c_size_t,
+        (
+            ctypes.c_void_p,
+            ctypes.POINTER(ctypes.c_uint32),
+            ctypes.c_char_p,
+            ctypes.c_char_p,
+            ctypes.c_size_t,
+            ctypes.c_char_p,
+            ctypes.POINTER(ctypes.c_uint32),
+            ctypes.POINTER(ctypes.c_size_t),
+        ),
+    ),
     "argus_shim_sonar_field": (ctypes.c_char_p, (ctypes.c_uint32,)),
     "argus_shim_status": (
         None,
@@ -350,6 +364,14 @@ def _hand_over(core: Any, storage: Any, ring: Ring) -> RingFault | None:
     return RingFault(meaning, keys[key] if key >= 0 else None, sonar if sonar >= 0 else None)
 
 
+class Fed(NamedTuple):
+    """What came of many packets: how many were taken, the time, and events with their packet and time."""
+
+    taken: int
+    now_ms: int
+    said: list[tuple[int, int, Event]]
+
+
 class Core:
     """One fault manager in memory of its own. Times are ms of any clock; their low 32 bits count."""
 
@@ -423,14 +445,43 @@ class Core:
     def events(self) -> Iterator[Event]:
         """Yield what was said since the last call."""
         while self._library.argus_shim_event(self._core, self._event):
-            fields = dict(zip(self._event_names, self._event, strict=True))
-            yield Event(
-                fields["t_ms"] & 0xFFFFFFFF,
-                fields["id"],
-                None if fields["sonar"] == _NO_SONAR else fields["sonar"],
-                _name(_Names.FAILURE, fields["state"]),
-                fields["value"],
-            )
+            yield self._event_of(tuple(self._event))
+
+    def _event_of(self, values: Sequence[int]) -> Event:
+        fields = dict(zip(self._event_names, values, strict=True))
+        return Event(
+            fields["t_ms"] & 0xFFFFFFFF,
+            fields["id"],
+            None if fields["sonar"] == _NO_SONAR else fields["sonar"],
+            _name(_Names.FAILURE, fields["state"]),
+            fields["value"],
+        )
+
+    def feed(self, now_ms: int, t_ms: bytes, lengths: bytes, data: bytes) -> Fed:
+        """Take the data parts of many packets, each at its time, with what time makes due between them.
+
+        t_ms: 32 bits each, lengths: 16 bits each, in the byte order of this machine. What is to be sent is dropped.
+        """
+        now = ctypes.c_uint32(now_ms)
+        count = ctypes.c_size_t()
+        rows = (ctypes.c_uint32 * self._library.argus_shim_said_size())()
+        taken = self._library.argus_shim_feed(
+            self._core,
+            ctypes.byref(now),
+            t_ms,
+            lengths,
+            len(lengths) // 2,
+            data,
+            rows,
+            ctypes.byref(count),
+        )
+        width = 2 + len(self._event_names)
+        flat = rows[: width * count.value]
+        said = []
+        for at in range(0, len(flat), width):
+            values = [value - (value >> 31 << 32) for value in flat[at + 2 : at + width]]
+            said.append((flat[at], flat[at + 1], self._event_of(values)))
+        return Fed(taken, now.value, said)
 
     @property
     def is_open(self) -> bool:

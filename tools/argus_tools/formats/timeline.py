@@ -83,6 +83,10 @@ class Timeline:
                 yield chunk
                 continue
             last = self._last
+            if type(t) is float and last is not None and last <= t <= last + DISORDER_S and self._is_plain:
+                self._raw = self._last = t
+                yield chunk
+                continue
             if last is None:
                 if t < 0:
                     self._add_s = -t
@@ -95,6 +99,11 @@ class Timeline:
                 chunk = chunk._replace(t=t)
             self._last = t if last is None else max(last, t)
             yield chunk
+
+    @property
+    def _is_plain(self) -> bool:
+        """Whether times are taken as they are, and no midnight has just passed."""
+        return not self._add_s and self._before_s is None
 
     def _follow(self, chunk: Chunk, t: float, last: float) -> None:
         """Change what is added to the times where the clock stepped between `last`, as corrected, and `t`."""

@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 import argparse
+import itertools
 import json
+from array import array
 from collections import Counter, deque
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, Final, NamedTuple
@@ -36,6 +38,10 @@ _PLAIN: Final = "\033[0m"
 _DISABLED: Final = "SONAR_DISABLED"
 _STATUS: Final = {"event": "STATUS", "id": 91, "level": 0, "name": "status"}
 _FLAGS_AT: Final = SIP["OFFSET_FLAGS"] - SIP["OFFSET_TYPE"]
+_COUNT_AT: Final = SIP["OFFSET_SONAR_COUNT"] - SIP["OFFSET_TYPE"]
+# So many rows are taken together; fewer SIPs than this are sooner taken one by one.
+_BATCH_ROWS: Final = 512
+_FEW_ROWS: Final = 4
 _ALL_ARRAYS: Final = (1 << TIMING["ARRAYS_MAX"]) - 1
 _ARRAY: Final = TIMING["TRANSDUCERS_PER_ARRAY"]
 _ABSENT, _UNKNOWN = "ABSENT", "UNKNOWN"
@@ -121,15 +127,90 @@ class Listener:
         self._unborne: set[int] = set()
         self._last: Core | None = None
         self._before: Counter[str] = Counter()
+        # Of the last SIP, and the lengths and numbers of readings of those that could be read.
+        self._flags = b""
+        self._shapes: set[tuple[int, int]] = set()
+
+    def take_many(self, rows: list[Row]) -> Iterator[tuple[int, Said]]:
+        """Take many rows; yield what is reported with the number of its row, as `take` does it row by row."""
+        at = 0
+        while at < len(rows):
+            end = at + self._alike(rows, at)
+            if end - at < _FEW_ROWS:
+                yield from ((at, said) for said in self.take(rows[at]))
+                at += 1
+                continue
+            taken = 0
+            for number, said in self._feed_many(rows[at:end]):
+                taken = number + 1
+                if said is not None:
+                    yield at + number, said
+            at += taken
+
+    def _alike(self, rows: list[Row], at: int) -> int:
+        """Return how many SIPs from there on change nothing but the manager in its session."""
+        if self.core is None:
+            return 0
+        flags, shapes = self._flags, self._shapes
+        has_times = rows[at].t is not None
+        count = 0
+        for t, _, direction, kind, is_ok, data, _ in itertools.islice(rows, at, None):
+            if (
+                kind != "SIP"
+                or not is_ok
+                or direction != ROBOT_TO_CLIENT
+                or data[_FLAGS_AT : _FLAGS_AT + 2] != flags
+                or (t is not None) != has_times
+                or (len(data), data[_COUNT_AT]) not in shapes
+            ):
+                break
+            count += 1
+        return count
+
+    def _feed_many(self, rows: list[Row]) -> Iterator[tuple[int, Said | None]]:
+        """Take SIPs that are alike; yield the number of each that reports something, and of the last one taken."""
+        core = self.core
+        assert core is not None
+        clocks = self._clocks(rows)
+        due = array("I", (max(clock - self._origin_ms, self._now_ms) & 0xFFFFFFFF for clock in clocks))
+        lengths = array("H", (len(row[5]) for row in rows))
+        begin_ms = self._now_ms
+        fed = core.feed(begin_ms, due.tobytes(), lengths.tobytes(), b"".join(row[5] for row in rows))
+        seen = 0
+        for number, now_ms, event in fed.said:
+            self._lately.extend([True] * (number + 1 - seen))
+            seen = number + 1
+            self._clock_ms, self._now_ms = clocks[number], begin_ms + (now_ms - begin_ms & 0xFFFFFFFF)
+            if said := self._placed(event, rows[number]):
+                yield number, said
+        self._lately.extend([True] * (fed.taken - seen))
+        self._clock_ms = clocks[fed.taken - 1]
+        self._now_ms = begin_ms + (fed.now_ms - begin_ms & 0xFFFFFFFF)
+        if not core.is_open:
+            self.core = None
+        yield fed.taken - 1, None
+
+    def _clocks(self, rows: list[Row]) -> list[int]:
+        """Return the log's clock at each of these SIPs, ms."""
+        if rows[0].t is None:
+            return [self._clock_ms + _SIP_MS * n for n in range(1, len(rows) + 1)]
+        times = itertools.accumulate(
+            (round((row[0] or 0.0) * 1000) for row in rows), max, initial=self._clock_ms
+        )
+        return list(times)[1:]
 
     def take(self, row: Row) -> Iterator[Said]:
         """Take the next packet or damage of the log."""
         is_read = is_sip(row)
+        if is_read:
+            self._flags = row.data[_FLAGS_AT : _FLAGS_AT + 2]
+            self._shapes.add((len(row.data), row.data[_COUNT_AT]))
         if row.ok and self._arrays.take(row, is_read):
             self._leave()
         if row.dir != ROBOT_TO_CLIENT:
             if row.type == "CLOSE":
                 self._arrays = _Arrays()
+                self._flags = b""
                 if self.core is not None:
                     self._leave()
             return
@@ -218,15 +299,20 @@ class Listener:
 
     def _said(self, core: Core, row: Row) -> Iterator[Said]:
         for event in core.events():
-            if event.sonar is not None and not self._is_heard(event.sonar):
-                continue
-            if self._is_unborne(event):
-                continue
-            behind_ms = (self._now_ms - event.t_ms) & 0xFFFFFFFF
-            at_ms = self._origin_ms + self._now_ms - (behind_ms if behind_ms < 1 << 31 else 0)
-            # What was said while the session was made up belongs to where the log begins.
-            t = None if row.t is None else max(at_ms, self._start_ms) / 1000
-            yield Said(t, row.offset, event)
+            if said := self._placed(event, row):
+                yield said
+
+    def _placed(self, event: Event, row: Row) -> Said | None:
+        """Return an event with the log's time; None for what the log bears out nothing of."""
+        if event.sonar is not None and not self._is_heard(event.sonar):
+            return None
+        if self._is_unborne(event):
+            return None
+        behind_ms = (self._now_ms - event.t_ms) & 0xFFFFFFFF
+        at_ms = self._origin_ms + self._now_ms - (behind_ms if behind_ms < 1 << 31 else 0)
+        # What was said while the session was made up belongs to where the log begins.
+        t = None if row.t is None else max(at_ms, self._start_ms) / 1000
+        return Said(t, row.offset, event)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -269,13 +355,17 @@ def run(args: argparse.Namespace) -> int:
     summary = Summary()
     is_short = not (args.json or args.events or args.follow)
     t: float | None = None
-    for row in source.rows():
-        t = row.t
-        summary.see(t, row.type == "SIP" and row.ok)
-        for said in listener.take(row):
+    rows = source.rows()
+    while batch := list(itertools.islice(rows, 1 if source.is_live else _BATCH_ROWS)):
+        seen = 0
+        for number, said in listener.take_many(batch):
+            summary.see_all(batch[seen : number + 1])
+            seen = number + 1
             summary.add(said.event, said.t, said.offset)
             if not is_short:
                 print(_json(said) if args.json else _line(said, colour), flush=args.follow)
+        summary.see_all(batch[seen:])
+        t = batch[-1].t
     status = listener.status
     if status is None:
         raise LogError(f"{args.log}: holds no SIP from the robot, so there is nothing to judge")

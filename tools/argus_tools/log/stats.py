@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import itertools
 import json
 import math
 import sys
@@ -25,6 +26,7 @@ BINS: Final = NO_ECHO_MM // BIN_MM
 # A SIP that comes later than this many cycles is a gap.
 GAP_CYCLES: Final = 3
 GAP_S: Final = GAP_CYCLES * TIMING["SIP_CYCLE_MS"] / 1000
+_BATCH_ROWS: Final = 4096
 _BARS: Final = " ▁▂▃▄▅▆▇█"
 _ASCII_BARS: Final = " .:-=+*#@"
 
@@ -60,6 +62,10 @@ class Spacing:
                 self.longest, self.longest_at = interval, self.last
             self.shortest = min(self.shortest, interval)
         self.last = t
+
+    def add_spread(self, squares: float) -> None:
+        """Add to the sum of squared deviations, of intervals that were counted together."""
+        self._m2 += squares
 
     @property
     def jitter(self) -> float | None:
@@ -197,9 +203,17 @@ def run(args: argparse.Namespace) -> int:
     source = Input(args)
     times = Times(args.start, args.end)
     stats = Stats()
-    for row in source.selected():
-        if times(row.t, args.log):
+    rows = source.selected()
+    if not times.is_open:
+        rows = (row for row in rows if times(row.t, args.log))
+    if source.is_live:
+        for row in rows:
             stats.add(row)
+    else:
+        from argus_tools.log.stats_bulk import add_rows
+
+        while batch := list(itertools.islice(rows, _BATCH_ROWS)):
+            add_rows(stats, batch)
     summary = {"file": args.log, "format": source.log.format.name} | stats.summary()
     print(json.dumps(summary) if args.json else _text(summary))
     return source.exit_code

@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import Any, Final
 
+from argus_tools.log.packets import Row
 from hil_sim.arcos import TIMING
 from hil_sim.core.library import Event, kind_name
 
@@ -51,6 +52,16 @@ class Summary:
         self._now = t if t is not None else self._now + _SIP_S * is_sip
         if self._first is None:
             self._first = self._now
+
+    def see_all(self, rows: Sequence[Row]) -> None:
+        """Take note of the times of packets and damage that follow each other."""
+        if rows and self._first is None:
+            self.see(rows[0].t, rows[0].type == "SIP" and rows[0].ok)
+            rows = rows[1:]
+        # Of those with times the last one counts, and what comes behind it.
+        last = next((n for n in range(len(rows) - 1, -1, -1) if rows[n].t is not None), 0)
+        for row in rows[last:]:
+            self.see(row.t, row.type == "SIP" and row.ok)
 
     def add(self, event: Event, t: float | None, offset: int) -> None:
         """Take the next event, with the log's time if it keeps one, and the place of the packet that brought it."""
