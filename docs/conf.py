@@ -86,8 +86,8 @@ def without_folders(app: Sphinx, page: str, source: list[str]) -> None:
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
-    """Add what the documents need: forges draw Mermaid, here it is text, as are our own notations."""
-    for notation in ("mermaid", "faults", "map"):
+    """Add what the documents need: our own notations are text."""
+    for notation in ("faults", "map"):
         app.add_lexer(notation, TextLexer)
     app.connect("source-read", without_folders)
     app.connect("build-finished", finish)

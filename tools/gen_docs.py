@@ -217,12 +217,11 @@ def modes() -> str:
 
 
 def machine() -> str:
-    """Return the ways between the modes as a Mermaid diagram."""
-    # ANY stands for itself: Mermaid draws no arrow from a state to one inside it.
-    diagram = ["```mermaid", "stateDiagram-v2", "    [*] --> OFFLINE", "    ANY : any mode in a session"]
+    """Return the ways between the modes as a Markdown table."""
+    lines = ["| from | to | when |", "|---|---|---|"]
     for before, after, *when in rows("supervisor/mode.h", "ARGUS_WAY_TABLE"):
-        diagram.append(f"    {before} --> {after} : {', '.join(when)}")
-    return "\n".join([*diagram, "    CLOSED --> [*]", "```"])
+        lines.append(f"| {before} | {after} | {_cell(when)} |")
+    return "\n".join(lines)
 
 
 _FORMS = {

@@ -35,11 +35,11 @@ from hil_sim.demo.runner import ENDING, Recording, Run, Setup
 from hil_sim.demo.scene import Drive
 from hil_sim.errors import InputError, SimError
 from hil_sim.faults.grammar import parse_fault
+from hil_sim.program import NO_ARGUSD, find_argusd
 from hil_sim.scenario.scenario import SEED_MAX, Scenario, load_scenario
 from hil_sim.world.files import load_world
 from hil_sim.world.model import World
 
-ROOT = Path(__file__).resolve().parents[2]
 SCENARIOS = Path(__file__).resolve().parents[1] / "scenarios"
 WORLDS = ("open-office", "demo", "smooth")
 FIRST_FAULT_MM, NEXT_FAULT_MM = 600, 800
@@ -91,13 +91,6 @@ def _policy(text: str) -> str:
     except InputError as error:
         raise argparse.ArgumentTypeError(str(error)) from error
     return text
-
-
-def _argusd() -> Path:
-    """The one that was built in this tree, or else the command that a wheel put beside this Python."""
-    built = ROOT / "build/release/argusd"
-    beside = Path(sys.executable).parent / "argusd"
-    return built if built.exists() or not beside.exists() else beside
 
 
 def _seed(text: str) -> int:
@@ -161,7 +154,7 @@ def parser() -> argparse.ArgumentParser:
     result.add_argument(
         "--out", type=Path, default=Path("build/demo"), metavar="DIR", help="records and picture"
     )
-    result.add_argument("--argusd", type=Path, default=_argusd(), metavar="FILE", help="the program")
+    result.add_argument("--argusd", type=Path, default=find_argusd(), metavar="FILE", help="the program")
     result.add_argument(
         "--timeout",
         type=_seconds,
@@ -207,6 +200,8 @@ def _goal(scenario: Scenario, world: World) -> tuple[float, float]:
 
 def _prepare(arguments: argparse.Namespace, scenario: Scenario) -> Setup:
     out: Path = arguments.out
+    if arguments.argusd is None:
+        raise SimError(NO_ARGUSD)
     try:
         out.mkdir(parents=True, exist_ok=True)
         (out / "course.csv").write_text(

@@ -15,10 +15,10 @@ from hil_sim.errors import InputError, SimError
 from hil_sim.experiment import doc, journey, study_tables
 from hil_sim.experiment.cases import ARRAYS, HEALTHY, POLICIES, WORLDS, parse_dead
 from hil_sim.experiment.stage import Stage
+from hil_sim.program import NO_ARGUSD, find_argusd
 from hil_sim.world.physics import SETS
 
 PROG: Final = "argus-sim experiment"
-_ROOT: Final = Path(__file__).resolve().parents[2]
 _EXAMPLES: Final = """\
 examples:
   argus-sim experiment table1                           an object on each bearing, STOP at 250 mm
@@ -68,9 +68,9 @@ def parser() -> argparse.ArgumentParser:
     short.add_argument(
         "--argusd",
         type=Path,
-        default=_ROOT / "build/release/argusd",
+        default=find_argusd(),
         metavar="FILE",
-        help="the program for --pty (default: of the build folder)",
+        help="the program for --pty (default: of the build folder, or as found)",
     )
     short.add_argument("--seed", type=_seed, default=1, metavar="N", help="of everything random (default 1)")
     what = result.add_argument_group("journey")
@@ -140,6 +140,8 @@ def _some_of(what: str, known: Sequence[str] | Mapping[str, object]) -> Callable
 
 
 def _stage(arguments: argparse.Namespace) -> Stage:
+    if arguments.pty and arguments.argusd is None:
+        raise SimError(NO_ARGUSD)
     return Stage(arguments.argusd if arguments.pty else None)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import http.server
 import math
+import re
 import statistics
 import threading
 from collections.abc import Sequence
@@ -31,6 +32,61 @@ def test_the_page_shows_the_robot_and_its_console_is_silent(page: Browser) -> No
     assert "Battery12." in figures
     page.wait("SIPs are counted", lambda: page.known("state.sips") > 20)
     assert page.complaints() == []
+
+
+def test_every_control_has_a_tooltip(page: Browser) -> None:
+    page.wait("the list is there", lambda: page.driver.find_elements(By.CSS_SELECTOR, ".sonar-row"))
+    controls = page.js(
+        "return [...document.querySelectorAll('button, input, select')].map((e) => [e.outerHTML, e.title])"
+    )
+    assert len(controls) > 35
+    assert [html for html, title in controls if not title] == []
+
+
+def test_values_of_events_have_units_or_names(page: Browser) -> None:
+    page.wait("it stands", lambda: page.known("state.mode") == "IDLE")
+    page.focus_stage()
+    page.keys(Keys.ARROW_LEFT)
+    page.wait(
+        "an angle is shown in degrees", lambda: re.search(r"stopped -?\d+\.\d\d deg", page.text("events"))
+    )
+    page.wait("an order by its name", lambda: "operatoroperator TURN" in page.text("events"))
+
+
+# Labels by the picture's own boxes, so that also a later change of font or place is seen.
+OVERLAPS = """
+const boxes = [...document.querySelectorAll('#robot .reading, #robot .deg, .headline p, .zoom button')]
+  .map((e) => [e.textContent, e.getBoundingClientRect()]);
+const stage = document.getElementById('stage').getBoundingClientRect();
+const found = [];
+boxes.forEach(([one, a], i) => {
+  if (a.left < stage.left || a.right > stage.right) found.push([one, 'outside']);
+  for (const [other, b] of boxes.slice(i + 1)) {
+    const apart = a.right <= b.left + 2 || b.right <= a.left + 2 || a.bottom <= b.top + 4 || b.bottom <= a.top + 4;
+    if (!apart && /^[+−]?[0-9.]+°?$/.test(one) && !/Sonar/.test(other)) found.push([one, other]);
+  }
+});
+return [boxes.length, found];
+"""
+
+
+@pytest.mark.parametrize("dark", [True, False], ids=["dark", "light"])
+def test_no_range_lies_on_another_on_a_phone(page: Browser, dark: bool) -> None:
+    page.size(360, 740)
+    page.dark(dark)
+    page.wait("it stands", lambda: page.known("state.mode") == "IDLE")
+    page.focus_stage()
+    seen = 0
+    for _ in range(6):  # other bearings, other ranges, other neighbours
+        shown, found = page.js(OVERLAPS)
+        assert found == []
+        seen = max(seen, shown)
+        heading = page.known("state.heading_cdeg")
+        page.keys(Keys.ARROW_LEFT)
+        page.wait("it turns", lambda was=heading: page.known("state.heading_cdeg") != was)
+        page.wait("it stands", lambda: page.known("state.mode") == "IDLE")
+    assert seen > 8, "there are ranges on the picture"
+    assert page.js("return document.documentElement.scrollWidth - innerWidth") <= 0
 
 
 def test_the_token_leaves_the_address_and_survives_a_reload(page: Browser, monitor: Monitor) -> None:

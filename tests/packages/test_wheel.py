@@ -93,7 +93,7 @@ def test_each_command_answers(wheel: Path, clean_venv: Path) -> None:
 
 
 def test_argusd_comes_along_and_needs_nothing_of_the_system(clean_venv: Path, tmp_path: Path) -> None:
-    find = "from argus_tools.monitor.sim import find_argusd; print(find_argusd(None))"
+    find = "from hil_sim.program import find_argusd; print(find_argusd())"
     env = {"PATH": "/usr/bin:/bin"}
     argusd = Path(run(clean_venv / "bin/python", "-I", "-c", find, cwd="/", env=env).strip())
     assert argusd.is_relative_to(clean_venv)

@@ -14,7 +14,6 @@ from typing import Any
 import pytest
 from argus_tools.control import cli
 from argus_tools.control.cli import EXIT_OK, EXIT_REFUSED, main, make_parser
-from argus_tools.control.client import Client
 
 Message = dict[str, Any]
 GREETING = {"control": 1, "argus": "0.1.0", "auth": "none"}
@@ -31,7 +30,7 @@ def status(t: float, mode: str) -> Message:
     return {"t": t, "event": "STATUS", "mode": mode}
 
 
-def argusd(folder: Path, before: list[Message], after: list[Message]) -> str:
+def argusd(folder: Path, before: list[Message], after: list[Message], **noted: str) -> str:
     """One that obeys every order; it streams BEFORE ahead of its reply to the order, and AFTER behind it."""
     path = folder / "s"
     listening = socket.socket(socket.AF_UNIX)
@@ -56,7 +55,7 @@ def argusd(folder: Path, before: list[Message], after: list[Message]) -> str:
                 asked = json.loads(line)
                 reply = {"re": asked["id"], "ok": True, "grant": "g"}
                 if asked["do"] == "order":
-                    say(*before, reply, *after)
+                    say(*before, reply | noted, *after)
                 else:
                     say(reply)
 
@@ -122,27 +121,11 @@ def test_help_tells_the_code() -> None:
     assert "1 argusd refuses, or another stopped the step or turn" in make_parser().format_help()
 
 
-@pytest.mark.parametrize(
-    ("point", "away_mm"), [("2,0", 898), ("901,0", 1), ("0.9m,30cm", 300), ("3000,0", 2100), ("1400,0", 500)]
-)
-def test_a_goal_nearer_than_the_robot_is_long_gets_a_word(
-    point: str, away_mm: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+@pytest.mark.parametrize("words", [["goto", "2,0"], ["course", "5,0", "2,0"], ["active"]])
+@pytest.mark.parametrize("noted", [{"say": "the goal is near; numbers are mm"}, {}])
+def test_what_argusd_notes_of_an_order_is_printed(
+    words: list[str], noted: dict[str, str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    place = argusd(tmp_path, [], [])
-    told = {"x_mm": 900, "y_mm": 0}
-
-    class Asked(Client):
-        def request(self, do: str, **members: Any) -> Message:
-            return {"state": told} if do == "status" else super().request(do, **members)
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(cli, "Client", Asked)
-        assert main(["--socket", place, "goto", point]) == EXIT_OK
+    assert main(["--socket", argusd(tmp_path, [], [], **noted), *words]) == EXIT_OK
     _, err = capsys.readouterr()
-    if away_mm < cli.LENGTH_MM:
-        assert err == (
-            f"argusctl: that is {away_mm} mm from where it is, less than the robot is long; "
-            "numbers are mm, or give a unit as 2m,0\n"
-        )
-    else:
-        assert err == ""
+    assert err == (f"argusctl: {noted['say']}\n" if noted else "")

@@ -4,34 +4,24 @@
 from __future__ import annotations
 
 import os
-import shutil
 import sys
 from pathlib import Path
 from typing import Final
 
-BESIDE: Final = Path(__file__).resolve().parent / "argusd"
-BUILT: Final = Path(__file__).resolve().parents[2] / "build/release/argusd"
+from hil_sim.program import ARGUSD_VARIABLE, NO_ARGUSD, find_argusd
+
 EXIT_MISSING: Final = 127
-
-
-def elsewhere() -> str | None:
-    """Return an argusd of PATH that is not this command."""
-    own = Path(sys.argv[0]).resolve()
-    for folder in os.get_exec_path():
-        found = shutil.which("argusd", path=folder)
-        if found is not None and Path(found).resolve() != own:
-            return found
-    return None
 
 
 def main() -> int:
     """Become argusd; return only when there is none."""
-    found = next((str(path) for path in (BUILT, BESIDE) if os.access(path, os.X_OK)), None) or elsewhere()
-    if found is not None:
+    own = Path(sys.argv[0]).resolve()
+    found = find_argusd(but=own)
+    if found is not None and Path(found).resolve() != own:
         os.execv(found, ["argusd", *sys.argv[1:]])
+    named = os.environ.get(ARGUSD_VARIABLE)
     print(
-        "argusd: this wheel brings none; install the Debian package argusd, or build it in the sources "
-        "(tools/dev build release)",
+        f"argusd: {ARGUSD_VARIABLE} names no other program: '{named}'" if named else NO_ARGUSD,
         file=sys.stderr,
     )
     return EXIT_MISSING

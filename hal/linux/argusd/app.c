@@ -24,7 +24,6 @@
 #include "survey.h"
 #include "text.h"
 
-#define LENGTH_MM 500 // of a P3-DX, nearly
 #define OPEN_TIMEOUT_MS 5000
 #define OPEN_RETRY_MS 250
 #define ANSWER_MS 30000u
@@ -142,21 +141,16 @@ static bool start_driver(hal_clock_t clock) {
     return give_ring(loop.driver.core);
 }
 
-// Mostly metres were meant.
-static void note_near(const argus_point_t *goal) {
-    if (abs(goal->x_mm) < LENGTH_MM && abs(goal->y_mm) < LENGTH_MM) {
-        fprintf(stderr,
-                "argusd: --goal is %d,%d mm from the start, less than the robot is long; numbers are mm\n",
-                (int)goal->x_mm, (int)goal->y_mm);
-    }
-}
-
 static bool load_course(void) {
     if (options.course_path != NULL) {
         return course_load(&course, options.course_path, message, sizeof message);
     }
     if (options.has_goal) {
-        note_near(&options.goal);
+        const char *const note = course_near(options.goal, (argus_point_t){0, 0});
+        if (note != NULL) {
+            fprintf(stderr, "argusd: --goal %d,%d: %s\n", (int)options.goal.x_mm, (int)options.goal.y_mm,
+                    note);
+        }
         course.point[0] = options.goal;
         course.count = 1;
     }

@@ -2,7 +2,10 @@
 // Carries out orders.
 #include "control_orders.h"
 
+#include <stdio.h>
 #include <string.h>
+
+#include "course.h"
 
 typedef bool (*act_t)(control_hands_t *self, const control_request_t *request, control_answer_t *answer);
 
@@ -92,6 +95,9 @@ static bool drive(control_hands_t *self, const argus_point_t *points, uint16_t c
                               !status.active ? "it is passive; order active first"
                                              : "there is no robot at the link");
     }
+    const char *const note =
+        course_near(points[count - 1], (argus_point_t){status.pose.x_mm, status.pose.y_mm});
+    snprintf(answer->say, sizeof answer->say, "%s", note == NULL ? "" : note);
     if (!argus_set_course(self->op->driver->core, points, count)) {
         return control_refuse(answer, "refused", "the course does not fit the fault manager");
     }

@@ -40,6 +40,7 @@ bool control_request_read(control_request_t *self, const char *line, size_t leng
     self->id_kind = CONTROL_NO_ID;
     self->word[0] = '\0';
     answer->why = NULL;
+    answer->say[0] = '\0';
     if (!json_read(&self->doc, line, length)) {
         return control_refuse(answer, "bad_json",
                               "this line is no JSON object of the form that is read here");
@@ -84,6 +85,8 @@ void control_reply(json_t *json, const control_request_t *request, const control
     if (answer->why != NULL) {
         json_name(json, "why");
         json_string(json, answer->why);
+    }
+    if (answer->say[0] != '\0') {
         json_name(json, "say");
         json_string(json, answer->say);
     }

@@ -20,7 +20,7 @@ typedef struct {
     char word[CONTROL_WORD_MAX]; // what `do` says
 } control_request_t;
 
-// `why` NULL: ok.
+// `why` NULL: ok, with a note in `say` or nothing.
 typedef struct {
     const char *why;
     char say[CONTROL_SAY_MAX];

@@ -9,6 +9,9 @@
 #include "text.h"
 
 #define LINE_MAX_BYTES 256
+#define LENGTH_MM 500 // of a P3-DX, nearly
+#define DIGITS(number) DIGITS_OF(number)
+#define DIGITS_OF(number) #number
 
 bool course_parse_point(const char *text, argus_point_t *point, char *message, size_t capacity) {
     char x[32] = "";
@@ -29,6 +32,14 @@ bool course_parse_point(const char *text, argus_point_t *point, char *message, s
                            (int)point->x_mm, (int)point->y_mm, (int)limit);
     }
     return true;
+}
+
+const char *course_near(argus_point_t goal, argus_point_t from) {
+    const int64_t x_mm = (int64_t)goal.x_mm - from.x_mm;
+    const int64_t y_mm = (int64_t)goal.y_mm - from.y_mm;
+    return x_mm * x_mm + y_mm * y_mm < (int64_t)LENGTH_MM * LENGTH_MM
+               ? "the goal is within " DIGITS(LENGTH_MM) " mm of the robot, which is longer; numbers are mm"
+               : NULL;
 }
 
 static void strip(char *line) {

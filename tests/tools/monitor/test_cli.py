@@ -19,7 +19,7 @@ import forks
 import pytest
 from argus_tools.monitor import cli, tui
 from argus_tools.monitor.cli import main, read_token
-from argus_tools.monitor.sim import Simulation, SimulationError, find_argusd
+from argus_tools.monitor.sim import Simulation, SimulationError, argusd_of
 
 from hil_sim.cli.main import main as sim_main
 
@@ -230,30 +230,27 @@ def test_argusd_is_found_by_option_variable_and_path(tmp_path: Path, monkeypatch
     program = tmp_path / "argusd"
     program.write_text("#!/bin/sh\n")
     program.chmod(0o755)
-    assert find_argusd(str(program)) == str(program)
+    assert argusd_of(str(program)) == str(program)
     monkeypatch.setenv("ARGUS_ARGUSD", str(program))
-    assert find_argusd(None) == str(program)
+    assert argusd_of(None) == str(program)
     monkeypatch.setenv("ARGUS_ARGUSD", str(tmp_path / "none"))
     with pytest.raises(SimulationError, match="no program"):
-        find_argusd(None)
+        argusd_of(None)
     monkeypatch.delenv("ARGUS_ARGUSD")
-    monkeypatch.setattr("argus_tools.monitor.sim._ROOT", tmp_path / "elsewhere")
-    monkeypatch.setenv("PATH", str(tmp_path))
-    assert find_argusd(None) == str(program)
     brought = tmp_path / "argus_tools/argusd"
-    monkeypatch.setattr("argus_tools.monitor.sim._BROUGHT", brought)
-    assert find_argusd(None) == str(program), "a wheel may have none"
+    monkeypatch.setattr("hil_sim.program._NEAR", (tmp_path / "elsewhere", brought))
+    monkeypatch.setenv("PATH", str(tmp_path))
+    assert argusd_of(None) == str(program), "a wheel may have none"
     brought.parent.mkdir()
     shutil.copy(program, brought)
-    assert find_argusd(None) == str(brought), "that of the wheel is of the same version as the page"
+    assert argusd_of(None) == str(brought), "that of the wheel is of the same version as the page"
 
 
 def test_where_no_argusd_is_it_says_how_to_get_one(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.delenv("ARGUS_ARGUSD", raising=False)
-    monkeypatch.setattr("argus_tools.monitor.sim._ROOT", tmp_path)
-    monkeypatch.setattr("argus_tools.monitor.sim._BROUGHT", tmp_path / "argusd")
+    monkeypatch.setattr("hil_sim.program._NEAR", (tmp_path / "none",))
     monkeypatch.setenv("PATH", str(tmp_path))
     assert main(["--sim", "--port", "0"]) == 3
     said = one_line(capsys)

@@ -156,3 +156,18 @@ def test_another_run_of_argusd_is_known_by_its_beginning(t: float, unix: float, 
     assert {"anew": True} not in memory.take(
         state(t + 1, unix=unix + 3600)
     )  # a clock that is set is no new run
+
+
+def test_an_event_carries_its_value_in_words() -> None:
+    memory = Memory()
+    for name, value, shown in (
+        ("STOPPED", -9298, " -92.98 deg"),
+        ("SONAR_SILENT", 2**31 - 1, " (never)"),
+        ("X", 1, ""),
+    ):
+        event: Message = {"event": name, "t": 1.0, "name": "drive", "value": value}
+        memory.take(event)
+        assert (event["shown"], memory.events[-1]["shown"]) == (shown, shown)
+    bare: Message = {"event": "STOPPED", "t": 1.0, "name": "drive"}
+    memory.take(bare)
+    assert bare["shown"] == ""

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import math
 import sys
 import time
 from collections.abc import Callable, Sequence
@@ -23,8 +22,6 @@ from hil_sim.version import add_version
 EXIT_OK, EXIT_REFUSED, EXIT_UNWRITABLE, EXIT_UNREACHABLE, EXIT_INTERRUPTED = 0, 1, 2, 3, 130
 KINDS: Final = (*SONAR_KINDS, "delayed", "ok")
 TOPICS: Final = ("events", "state", "readings", "evidence")
-LENGTH_MM: Final = 500
-"""A P3-DX is 511 mm long; the least of the known robots 330."""
 _SILENT_S: Final = 1.5
 _SILENT_PERIODS: Final = 1.5
 _MOTION_PERIOD_MS: Final = 100
@@ -172,21 +169,6 @@ def _order_once_checked(client: Client, name: str, members: Message) -> None:
             return
 
 
-def _note_where(client: Client, members: Message) -> None:
-    """Tell of a goal that is nearer than the robot is long: mostly metres were meant."""
-    state = client.request("status").get("state", {})
-    if "x_mm" not in state:
-        return
-    x_mm, y_mm = members["points"][-1] if "points" in members else (members["x_mm"], members["y_mm"])
-    away_mm = round(math.hypot(x_mm - state["x_mm"], y_mm - state["y_mm"]))
-    if away_mm < LENGTH_MM:
-        print(
-            f"argusctl: that is {away_mm} mm from where it is, less than the robot is long; "
-            "numbers are mm, or give a unit as 2m,0",
-            file=sys.stderr,
-        )
-
-
 def _order(
     name: str, members: Callable[[argparse.Namespace], Message]
 ) -> Callable[[Client, argparse.Namespace], int]:
@@ -196,9 +178,9 @@ def _order(
         if name in BY_HAND:
             _move(client, name, members(args))
         else:
-            client.order(name, **members(args))
-            if name in ("goto", "course"):
-                _note_where(client, members(args))
+            note = client.order(name, **members(args))
+            if note is not None:
+                print(f"argusctl: {note}", file=sys.stderr)
         return EXIT_OK
 
     return act

@@ -171,11 +171,12 @@ class Client:
         self._grant = str(self.request("take", force=force)["grant"])
         self._seq = 0
 
-    def order(self, order: str, **members: Any) -> None:
-        """Give an order; control must have been taken, but for `stop`."""
+    def order(self, order: str, **members: Any) -> str | None:
+        """Give an order, and return what is to be noted of it; control must have been taken, but for `stop`."""
         self._seq += 1
         entitled = {"grant": self._grant, "seq": self._seq} if self._grant is not None else {}
-        self.request("order", order=order, **entitled, **members)
+        note = self.request("order", order=order, **entitled, **members).get("say")
+        return None if note is None else str(note)
 
     def watch(self, *topics: str, period_ms: int = 500) -> None:
         """Ask for streams; message() yields them."""

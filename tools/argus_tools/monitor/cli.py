@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any, Final
 from argus_tools.monitor import tui
 from argus_tools.monitor.geometry import walls_of
 from argus_tools.monitor.hub import Hub
-from argus_tools.monitor.sim import Simulation, SimulationError, find_argusd
+from argus_tools.monitor.sim import Simulation, SimulationError, argusd_of
 from argus_tools.monitor.upstream import Address, parse_address
 from hil_sim.arguments import EXIT_USAGE, Parser
 from hil_sim.cli.arguments import parser as sim_parser
@@ -164,7 +164,7 @@ def _simulation(arguments: argparse.Namespace, words: Sequence[str]) -> tuple[Si
         world = load_world(scenario.world)
     except SimError as error:
         raise UsageError(str(error)) from None
-    made = Simulation(words, find_argusd(arguments.argusd), arguments.argusd_option)
+    made = Simulation(words, argusd_of(arguments.argusd), arguments.argusd_option)
     return made, {"world": world.name, "walls": walls_of(world, scenario.start or world.start)}
 
 

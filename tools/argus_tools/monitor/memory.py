@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
 from argus_tools.monitor.geometry import robot_of
+from hil_sim.faults.values import value_words
 from hil_sim.sonar.params import NO_ECHO_MM
 from hil_sim.tables.robot import RobotTable
 
@@ -63,6 +64,8 @@ class Memory:
                 told.append({"anew": True})
             told += self._take_state(message)
         elif kind == "event":
+            value = message.get("value")
+            message["shown"] = value_words(message["event"], value) if isinstance(value, int) else ""
             self.events.append(message)
         elif kind == "readings":
             told += self._take_readings(message["readings"])

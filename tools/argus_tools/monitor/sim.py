@@ -17,19 +17,12 @@ from pathlib import Path
 from typing import Final
 
 from argus_tools.monitor.upstream import Address, Message
+from hil_sim.program import ARGUSD_VARIABLE, NO_ARGUSD, find_argusd
 
 BAUD: Final = 9600
-ARGUSD_VARIABLE: Final = "ARGUS_ARGUSD"
 START_WITHIN_S: Final = 60.0
 ANSWER_WITHIN_S: Final = 5.0
 END_WITHIN_S: Final = 6.0
-_ROOT: Final = Path(__file__).resolve().parents[3]
-_BROUGHT: Final = Path(__file__).resolve().parents[1] / "argusd"
-"""Where a wheel has it."""
-_NO_ARGUSD: Final = (
-    "argusd is not found: install the Debian package argusd, or build it (tools/dev build release, in the sources) "
-    "and name it with --argusd"
-)
 _PR_SET_PDEATHSIG: Final = 1
 
 
@@ -37,16 +30,14 @@ class SimulationError(Exception):
     """The robot or its manager does not start, or ended; the message is one line."""
 
 
-def find_argusd(given: str | None) -> str:
-    """Return the argusd to run: the one GIVEN, that of ARGUS_ARGUSD, of the build folder, beside us, or in PATH."""
+def argusd_of(given: str | None) -> str:
+    """Return the argusd to run: the one GIVEN, else by the rule for all programs."""
     wanted = given or os.environ.get(ARGUSD_VARIABLE)
-    if wanted:
-        found = shutil.which(wanted)
-    else:
-        near = (path for path in (_ROOT / "build/release/argusd", _BROUGHT) if os.access(path, os.X_OK))
-        found = next(map(str, near), None) or shutil.which("argusd")
+    found = shutil.which(given) if given else find_argusd()
     if found is None:
-        raise SimulationError(f"no program '{wanted}'" if wanted else _NO_ARGUSD)
+        raise SimulationError(
+            f"no program '{wanted}'" if wanted else f"{NO_ARGUSD}, and name it with --argusd"
+        )
     return found
 
 

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
-from argus_tools.monitor.sim import Simulation, SimulationError, find_argusd
+from argus_tools.monitor.sim import Simulation, SimulationError, argusd_of
 
 CONTROL_WITHIN_S: Final = 10.0
 _POLL_S: Final = 0.05
@@ -18,7 +18,7 @@ _POLL_S: Final = 0.05
 
 def screen(argusd: str | None, address: str, token: str | None) -> list[str]:
     """Return the command that shows the screen of the argusd whose control socket is at ADDRESS."""
-    words = [find_argusd(argusd), "--attach", address]
+    words = [argusd_of(argusd), "--attach", address]
     return [*words, "--control-token", token] if token else words
 
 

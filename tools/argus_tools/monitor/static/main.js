@@ -183,6 +183,7 @@ function askToken() {
 
 // ---- orders
 
+/** The answer; null, and a word on the page, where it is refused. */
 async function ask(request) {
   let answer = await link.ask(request);
   if (answer.why === "not_in_control" || answer.why === "stale_grant") {
@@ -190,11 +191,8 @@ async function ask(request) {
     answer = taken.ok ? await link.ask(request) : taken;
   }
   if (!answer.ok) say(answer.why === "taken" ? "Somebody else is in control. Take over first." : answer.say || "It was refused.", "warn");
-  return answer.ok;
+  return answer.ok ? answer : null;
 }
-
-/** A P3-DX is 511 mm long. */
-const LENGTH_MM = 500;
 
 const order = (name, members = {}) => ask({ do: "order", order: name, ...members });
 const chosenOrder = (name) => order(name, { sonar: known.chosen });
@@ -204,11 +202,10 @@ async function stop() {
 }
 
 async function goTo(x, y) {
-  if (await order("goto", { x_mm: x, y_mm: y })) {
-    const away = Math.hypot(x - (known.state?.x_mm ?? 0), y - (known.state?.y_mm ?? 0));
-    const note = away < LENGTH_MM ? " That is nearer than the robot is long." : "";
-    say(known.state?.active ? `On its way.${note}` : "The robot is passive: it drives when you make it active.");
-  }
+  const answer = await order("goto", { x_mm: x, y_mm: y });
+  if (!answer) return;
+  const note = answer.say ? ` Note: ${answer.say}.` : "";
+  say(known.state?.active ? `On its way.${note}` : "The robot is passive: it drives when you make it active.");
 }
 
 async function breakOrMend(k) {

@@ -56,7 +56,7 @@ export class SonarList {
     this.rows = robot.sonars.map((one, k) => {
       const parts = { glyph: element("span", { class: "g" }), mm: element("span", { class: "mm" }), bar: element("i"),
         what: element("span", { class: "what" }), level: element("i") };
-      const row = element("button", { type: "button", role: "radio", class: "sonar-row", "data-k": k, "aria-checked": "false", tabindex: "-1" },
+      const row = element("button", { type: "button", role: "radio", class: "sonar-row", title: "Choose this sonar (N and B)", "data-k": k, "aria-checked": "false", tabindex: "-1" },
         parts.glyph, element("span", { class: "n" }, String(k)), element("span", { class: "deg" }, signed(one.deg)), parts.mm,
         element("span", { class: "range" }, parts.bar), parts.what, element("span", { class: "proof" }, parts.level));
       row.addEventListener("click", () => this.choose(k));
@@ -175,12 +175,14 @@ export class Events {
     const key = `${event.event} ${event.name}`;
     if (this.last?.key === key) {
       this.last.count += 1;
+      put(this.last.words, what);
       this.last.times.textContent = ` ×${this.last.count}`;
       return;
     }
     const times = element("span", { class: "times" });
-    const line = element("li", { class: LEVELS[event.level] ?? "ok" }, element("time", {}, event.t.toFixed(1)), element("b", {}, about), element("span", {}, what, times));
-    this.last = { key, count: 1, times };
+    const words = element("span", {}, what);
+    const line = element("li", { class: LEVELS[event.level] ?? "ok" }, element("time", {}, event.t.toFixed(1)), element("b", {}, about), element("span", {}, words, times));
+    this.last = { key, count: 1, times, words };
     this.box.prepend(line);
     while (this.box.childElementCount > EVENTS_SHOWN) this.box.lastElementChild.remove();
   }

@@ -10,6 +10,10 @@ const BEAM_DEG = 8;
 const RING_PART = 0.215; // of half the picture: where the eyes sit
 const RING_MIN = 68; // pixels: eyes 20 degrees apart are then far enough from one another for a finger
 const SPANS_MM = [1500, 2000, 2600, 3300, 4200, 5400, 7000, 10000];
+const SCALE_DEG = -70; // where the range circles have their figures
+const PLAN_OUT = 20; // pixels from the plan's arc to its figure
+const LABEL_OUT = [16, 32, 48]; // pixels beyond the echo
+const [LABEL_WIDE, LABEL_HIGH] = [36, 15]; // pixels that a figure keeps to itself
 const GLIDE_MS = 110;
 const GLIDE_FRAME_MS = 30;
 
@@ -171,14 +175,15 @@ export class Stage {
     const colour = (name) => this.colours[name];
     pen.setTransform(ratio, 0, 0, ratio, (width * ratio) / 2, (height * ratio) / 2);
     pen.clearRect(-width / 2, -height / 2, width, height);
-    this.#grid(pen, width, height, colour("grid"), colour("muted"), colour("floor"));
+    this.#grid(pen, width, height, colour("grid"));
     this.#lines(pen, colour("wall"));
+    this.#scale(pen, colour("muted"), colour("floor"));
     this.#way(pen, colour("way"));
     this.#dots(pen, colour("echo"), colour("doubted"));
     if (this.goal) this.#flag(pen, colour("goal"));
   }
 
-  #grid(pen, width, height, colour, ink, paper) {
+  #grid(pen, width, height, colour) {
     const step = 1000 * this.scale;
     pen.fillStyle = colour;
     const left = ((this.pose.y * this.scale) % step) - Math.ceil(width / step) * step;
@@ -193,13 +198,16 @@ export class Stage {
       pen.arc(0, 0, r * this.scale, 0, 2 * Math.PI);
       pen.stroke();
     }
+  }
+
+  #scale(pen, ink, paper) {
     pen.font = "12px ui-monospace, monospace";
     pen.textAlign = "center";
     pen.fillStyle = ink;
     pen.strokeStyle = paper; // a rim, so that beams and circles do not cross the figures
     pen.lineWidth = 4;
     for (let r = 1000; r <= NO_ECHO_MM; r += 1000) {
-      const [x, y] = polar(r * this.scale, -70);
+      const [x, y] = polar(r * this.scale, SCALE_DEG);
       pen.strokeText(`${r / 1000} m`, x, y + 4);
       pen.fillText(`${r / 1000} m`, x, y + 4);
     }
@@ -293,6 +301,7 @@ export class Stage {
   }
 
   #beams(turned, upright) {
+    const labels = [];
     for (const [k, one] of this.robot.sonars.entries()) {
       const age = this.readings?.age_ms[k] ?? this.state.age_ms[k];
       if (!exists(this.state, k) || age < 0) continue;
@@ -305,19 +314,32 @@ export class Stage {
       make("path", { d: `M0 0L${x1} ${y1}A${r} ${r} 0 0 0 ${x2} ${y2}Z`, class: "cone" }, group);
       if (mm < NO_ECHO_MM) {
         make("path", { d: `M${x1} ${y1}A${r} ${r} 0 0 0 ${x2} ${y2}`, class: "echo" }, group);
-        this.#label(upright, one, mm, look);
+        labels.push({ one, mm, look, first: k === this.chosen ? 0 : look === "good" ? 2 : 1 });
       }
     }
+    const taken = [...this.#scaleLabels(), ...this.#planLabels()];
+    for (const label of labels.sort((a, b) => a.first - b.first)) this.#label(upright, taken, label);
   }
 
-  #label(upright, one, mm, look) {
+  /** Where the figures of the range circles stand. */
+  #scaleLabels() {
+    return [1, 2, 3, 4, 5].map((m) => polar(m * 1000 * this.scale, SCALE_DEG));
+  }
+
+  /** The range at its echo, farther out where another figure stands, nowhere if there is no room: the list has it. */
+  #label(upright, taken, { one, mm, look }) {
     const [fx, fy] = onFloor({ x: 0, y: 0, deg: this.pose.deg }, one.x_mm, one.y_mm);
-    const deg = one.deg + this.pose.deg;
-    const [x, y] = polar(mm * this.scale + 16, deg);
-    const at = [x - fy * this.scale, y - fx * this.scale];
-    if (Math.hypot(...at) < this.ring + 2.6 * this.r + 14) return; // the list has it
-    const text = make("text", { x: at[0], y: at[1] + 4, class: `reading ${look}` }, upright);
-    text.textContent = metres(mm);
+    const { clientWidth: width, clientHeight: height } = this.box;
+    for (const out of LABEL_OUT) {
+      const [px, py] = polar(mm * this.scale + out, one.deg + this.pose.deg);
+      const [x, y] = [px - fy * this.scale, py - fx * this.scale];
+      if (Math.hypot(x, y) < this.ring + 2.6 * this.r + 14) continue;
+      if (Math.abs(x) > width / 2 - LABEL_WIDE / 2 || Math.abs(y) > height / 2 - LABEL_HIGH) continue;
+      if (taken.some(([ox, oy]) => Math.abs(x - ox) < LABEL_WIDE && Math.abs(y - oy) < LABEL_HIGH)) continue;
+      taken.push([x, y]);
+      make("text", { x, y: y + 4, class: `reading ${look}` }, upright).textContent = metres(mm);
+      return;
+    }
   }
 
   #coverage(turned) {
@@ -334,18 +356,27 @@ export class Stage {
     }
   }
 
+  #planRadius() {
+    return this.ring + 3.6 * this.r;
+  }
+
+  /** Where the plan has its figures and their marks. */
+  #planLabels() {
+    return (this.state.plan_deg ?? []).flatMap((deg) => [PLAN_OUT, 0].map((out) => polar(this.#planRadius() + out, this.base + deg)));
+  }
+
   #plan(upright) {
     const plan = this.state.plan_deg ?? [];
     const sweeping = this.state.mode === "SWEEPING";
     const turn = between(this.base, this.pose.deg);
     const now = sweeping ? this.nearest(plan, turn) : -1;
-    const r = this.ring + 3.6 * this.r;
+    const r = this.#planRadius();
     plan.forEach((deg, k) => {
       const group = make("g", { class: k === now ? "turn now" : "turn" }, upright);
       make("path", { d: arc(r, this.base + Math.min(0, deg), this.base + Math.max(0, deg)), class: "sweep" }, group);
       const [x1, y1] = polar(r - 5, this.base + deg), [x2, y2] = polar(r + 7, this.base + deg);
       make("path", { d: `M${x1} ${y1}L${x2} ${y2}`, class: "stopmark" }, group);
-      const [x, y] = polar(r + 20, this.base + deg);
+      const [x, y] = polar(r + PLAN_OUT, this.base + deg);
       make("text", { x, y: y + 4, class: "deg" }, group).textContent = signed(deg);
     });
     if (plan.length) {

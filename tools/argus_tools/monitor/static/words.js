@@ -66,5 +66,5 @@ export function eventText(event) {
   const what = event.event.toLowerCase().replaceAll("_", " ");
   const sonar = /^sonar\/\w+\/(\d+)$/.exec(event.name);
   const about = sonar ? `sonar ${Number(sonar[1])}` : event.name;
-  return { about, what: sonar ? what.replace(/^sonar /, "") : what };
+  return { about, what: (sonar ? what.replace(/^sonar /, "") : what) + (event.shown ?? "") };
 }

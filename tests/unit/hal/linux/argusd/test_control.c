@@ -155,6 +155,21 @@ void test_a_turn_that_is_over_leaves_nothing_to_stop(void) {
     TEST_ASSERT_TRUE(robot_heading_deg(&bench_robot) > 15);
 }
 
+void test_a_goal_nearer_than_the_robot_is_long_gets_a_note(void) {
+    static const char near[] = "\"ok\":true,\"say\":\"the goal is within 500 mm of the robot";
+    bench_expect(&a, "{\"do\":\"take\"}", "\"ok\":true");
+    expect_order(&a, 1, "\"goto\",\"x_mm\":2,\"y_mm\":0", near);
+    expect_order(&a, 2, "\"goto\",\"x_mm\":-499,\"y_mm\":0", near);
+    expect_order(&a, 3, "\"goto\",\"x_mm\":400,\"y_mm\":400", "\"ok\":true}"); // 566 mm
+    expect_order(&a, 4, "\"course\",\"points\":[[5000,0],[2,0]]", near);
+    expect_order(&a, 5, "\"course\",\"points\":[[2,0],[5000,0]]", "\"ok\":true}");
+    expect_order(&a, 6, "\"goto\",\"x_mm\":2000,\"y_mm\":0", "\"ok\":true}");
+    TEST_ASSERT_TRUE(moves_within(8000));
+    bench_run(30000);
+    expect_order(&a, 7, "\"goto\",\"x_mm\":2000,\"y_mm\":200", near); // from where it is, not from the start
+    expect_order(&a, 8, "\"goto\",\"x_mm\":0,\"y_mm\":0", "\"ok\":true}");
+}
+
 void test_orders_say_why_not(void) {
     bench_expect(&a, "{\"do\":\"take\"}", "\"ok\":true");
     expect_order(&a, 1, "\"passive\"", "\"ok\":true");
