@@ -200,7 +200,7 @@ def health() -> str:
 def reflexes() -> str:
     """Return the reflexes in their order as a Markdown table."""
     lines = ["| reflex | ends the SIP's reflexes | what it sees and does |", "|---|---|---|"]
-    for name, last, *meaning in rows("supervisor/reflexes.h", "ARGUS_REFLEX_TABLE"):
+    for name, last, *meaning in rows("behaviour/reflexes.h", "ARGUS_REFLEX_TABLE"):
         lines.append(f"| {name} | {'yes' if last == '1' else 'no'} | {_cell(meaning)} |")
     return "\n".join(lines)
 
@@ -209,7 +209,7 @@ def modes() -> str:
     """Return the modes as a Markdown table."""
     flags = {"ARGUS_MAY_TURN": "turns", "ARGUS_MAY_TRANSLATE": "drives", "ARGUS_MAY_BREAK_OFF": "broken off"}
     lines = ["| mode | may | ends by itself | meaning |", "|---|---|---|---|"]
-    for name, may, limit, after, *meaning in rows("supervisor/mode.h", "ARGUS_MODE_TABLE"):
+    for name, may, limit, after, *meaning in rows("behaviour/mode.h", "ARGUS_MODE_TABLE"):
         shown = ", ".join(word for flag, word in flags.items() if flag in may)
         end = "" if limit == "0" else f"after {limit} ms: {after}"
         lines.append(f"| {name} | {shown} | {end} | {_cell(meaning)} |")
@@ -219,7 +219,7 @@ def modes() -> str:
 def machine() -> str:
     """Return the ways between the modes as a Markdown table."""
     lines = ["| from | to | when |", "|---|---|---|"]
-    for before, after, *when in rows("supervisor/mode.h", "ARGUS_WAY_TABLE"):
+    for before, after, *when in rows("behaviour/mode.h", "ARGUS_WAY_TABLE"):
         lines.append(f"| {before} | {after} | {_cell(when)} |")
     return "\n".join(lines)
 

@@ -3,9 +3,9 @@
 #include "guardian/bounds.h"
 
 #include "adjustment/grazing.h"
+#include "behaviour/state.h"
 #include "knowledge/angle.h"
 #include "knowledge/config.h"
-#include "supervisor/state.h"
 
 #define BESIDE_MM 30     // from the body: readings scatter, and the heading does
 #define CONE_PLACES 2    // of a cone on either side of its axis

@@ -3,7 +3,7 @@
 #ifndef ARGUS_BOUNDS_H
 #define ARGUS_BOUNDS_H
 
-#include "supervisor/permit.h"
+#include "behaviour/permit.h"
 
 // A turn of a client, at most, and its deceleration, at least: S7 counts on both.
 #define ARGUS_CLIENT_TURN_DEG_S 100

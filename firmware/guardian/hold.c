@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "adjustment/motion.h"
+#include "behaviour/state.h"
 #include "knowledge/angle.h"
-#include "supervisor/state.h"
 
 #define STEP_MM_S 25    // by so much at least a speed is raised again
 #define DONE_MM 20      // of a MOVE: nothing is left

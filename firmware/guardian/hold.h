@@ -3,10 +3,10 @@
 #ifndef ARGUS_HOLD_H
 #define ARGUS_HOLD_H
 
+#include "behaviour/core.h"
 #include "guardian/bounds.h"
 #include "guardian/heed.h"
 #include "guardian/wish.h"
-#include "supervisor/core.h"
 
 // What a guard port has of the manager: it reads all, and writes what goes out, the speed of the set-up while
 // the client has the robot, and where the robot counts from.

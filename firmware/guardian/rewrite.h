@@ -3,7 +3,7 @@
 #ifndef ARGUS_REWRITE_H
 #define ARGUS_REWRITE_H
 
-#include "supervisor/core.h"
+#include "behaviour/core.h"
 
 #define ARGUS_ANALOG_PORTS 8
 

@@ -3,11 +3,11 @@
 // it.
 #include "supervisor/body.h"
 
+#include "behaviour/state.h"
 #include "knowledge/body.h"
 #include "knowledge/config.h"
 #include "supervisor/faults.h"
 #include "supervisor/journey.h"
-#include "supervisor/state.h"
 
 #define STRANGE_SIPS 5 // one SIP may say anything
 
@@ -104,4 +104,19 @@ bool argus_sees_through_body(const argus_t *const self, argus_orders_t *const or
         orders->bar = ARGUS_BAR_SONARS;
     }
     return orders->passive;
+}
+
+void argus_turn_about(argus_t *const self) {
+    const argus_robot_t *const other = argus_robot_other_end(self->knowledge.robot);
+    ARGUS_ASSERT(other != NULL && argus_at_rest(&self->knowledge));
+    argus_knowledge_turn_about(&self->knowledge, other);
+    self->reverse = (argus_reverse_t){.odometer_mm = self->knowledge.odometer_mm, .done = true};
+    argus_algorithm1_init(&self->algorithm1);
+    argus_extremes_restart(&self->extremes);
+    argus_slip_restart(&self->slip);
+    argus_base_drop(&self->base);
+    self->checked = false;
+    self->plan = argus_plan(other, argus_policy(self), 0, 0);
+    argus_emit(&self->events, ARGUS_EV_REVERSED, other->reversed ? 1 : 0);
+    argus_replan(self);
 }

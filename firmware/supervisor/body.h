@@ -3,7 +3,7 @@
 #ifndef ARGUS_SUPERVISOR_BODY_H
 #define ARGUS_SUPERVISOR_BODY_H
 
-#include "supervisor/core.h"
+#include "behaviour/core.h"
 
 // A session is open, and the geometry of its robot holds from now on. A robot that is unknown, or for which
 // the settings are unsafe, is passive.
@@ -15,5 +15,9 @@ bool argus_sees_through_body(const argus_t *self, argus_orders_t *orders, argus_
 
 // Says why the robot at hand may not be driven; false: it may.
 bool argus_find_bar(const argus_t *self, argus_orders_t *orders, argus_events_t *events);
+
+// At rest: the other end leads from now on; nothing translates before a full check. The way to its heading is
+// an ordinary turn, under S7.
+void argus_turn_about(argus_t *self);
 
 #endif

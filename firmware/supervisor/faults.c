@@ -4,9 +4,9 @@
 
 #include <string.h>
 
+#include "behaviour/state.h"
 #include "knowledge/angle.h"
 #include "supervisor/journey.h"
-#include "supervisor/state.h"
 
 void argus_share_slots(const argus_t *const self, argus_outbox_t *const out, argus_firing_t *const firing) {
     if (argus_is_active(self) && argus_is_open(self)) {

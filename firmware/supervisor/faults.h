@@ -4,7 +4,7 @@
 #ifndef ARGUS_FAULTS_H
 #define ARGUS_FAULTS_H
 
-#include "supervisor/core.h"
+#include "behaviour/core.h"
 
 void argus_disable(argus_t *self, int sonar, argus_fault_kind_t kind);
 

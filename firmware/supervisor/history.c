@@ -3,8 +3,8 @@
 #include "supervisor/history.h"
 
 #include "analysis/record.h"
+#include "behaviour/state.h"
 #include "supervisor/faults.h"
-#include "supervisor/state.h"
 
 static uint32_t robot_of(const argus_t *const self) {
     const argus_session_t *const session = &self->session;

@@ -3,7 +3,7 @@
 #ifndef ARGUS_JOURNEY_H
 #define ARGUS_JOURNEY_H
 
-#include "supervisor/core.h"
+#include "behaviour/core.h"
 
 // A course is set; false: it is none, and nothing changes. It is followed from the start again.
 bool argus_journey_set(argus_travel_t *mine, const argus_point_t *points, uint16_t count);

@@ -3,12 +3,12 @@
 #include "supervisor/judge.h"
 
 #include "awareness/finding.h"
+#include "behaviour/looks.h"
+#include "behaviour/mode.h"
+#include "behaviour/reverse.h"
+#include "behaviour/state.h"
 #include "knowledge/angle.h"
 #include "supervisor/faults.h"
-#include "supervisor/looks.h"
-#include "supervisor/mode.h"
-#include "supervisor/reverse.h"
-#include "supervisor/state.h"
 
 #define PROBATION_AGREED 4
 #define PROBATION_MS 4000u

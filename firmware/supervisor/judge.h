@@ -3,8 +3,8 @@
 #ifndef ARGUS_JUDGE_H
 #define ARGUS_JUDGE_H
 
-#include "supervisor/core.h"
-#include "supervisor/intent.h"
+#include "behaviour/core.h"
+#include "behaviour/intent.h"
 
 // One sonar. A conviction ahead of the robot calls for a check at rest.
 void argus_judge(argus_t *self, int sonar, argus_intent_t *intent);

@@ -5,6 +5,9 @@
 
 #include <string.h>
 
+#include "behaviour/looks.h"
+#include "behaviour/mode.h"
+#include "behaviour/state.h"
 #include "knowledge/angle.h"
 #include "knowledge/body.h"
 #include "knowledge/config.h"
@@ -13,12 +16,9 @@
 #include "supervisor/faults.h"
 #include "supervisor/history.h"
 #include "supervisor/journey.h"
-#include "supervisor/looks.h"
-#include "supervisor/mode.h"
 #include "supervisor/modes.h"
 #include "supervisor/motions.h"
 #include "supervisor/orders.h"
-#include "supervisor/state.h"
 #include "supervisor/stranger.h"
 
 #define AWAY_CDEG 500

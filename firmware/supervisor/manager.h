@@ -3,7 +3,7 @@
 #ifndef ARGUS_MANAGER_H
 #define ARGUS_MANAGER_H
 
-#include "supervisor/core.h"
+#include "behaviour/core.h"
 
 // argus_init() in memory that is an argus_t already.
 void argus_manager_init(argus_t *self, const argus_config_t *config, uint32_t now_ms);

@@ -2,19 +2,20 @@
 // Carries out intents, under the guard, and changes the mode (paper: Fig. 2).
 #include "supervisor/modes.h"
 
+#include "behaviour/looks.h"
+#include "behaviour/mode.h"
+#include "behaviour/reflexes.h"
+#include "behaviour/resting.h"
+#include "behaviour/reverse.h"
+#include "behaviour/state.h"
+#include "behaviour/travel.h"
 #include "knowledge/angle.h"
+#include "supervisor/body.h"
 #include "supervisor/check.h"
 #include "supervisor/faults.h"
 #include "supervisor/journey.h"
 #include "supervisor/judge.h"
-#include "supervisor/looks.h"
-#include "supervisor/mode.h"
 #include "supervisor/motions.h"
-#include "supervisor/reflexes.h"
-#include "supervisor/resting.h"
-#include "supervisor/reverse.h"
-#include "supervisor/state.h"
-#include "supervisor/travel.h"
 
 #define FOLLOW_MOST 4                       // intents in a row that follow from one
 #define MORE_MOST (ARGUS_WAYPOINTS_MAX + 8) // times that a mode has more to do in one SIP

@@ -3,8 +3,8 @@
 #ifndef ARGUS_MODES_H
 #define ARGUS_MODES_H
 
-#include "supervisor/core.h"
-#include "supervisor/intent.h"
+#include "behaviour/core.h"
+#include "behaviour/intent.h"
 
 // The intent and what follows from it.
 void argus_do(argus_t *self, const argus_intent_t *wanted);

@@ -2,8 +2,8 @@
 // Puts commands to the wheels into the outbox, one motion at a time.
 #include "supervisor/motions.h"
 
+#include "behaviour/permit.h"
 #include "knowledge/angle.h"
-#include "supervisor/permit.h"
 
 bool argus_is_to_halt(const argus_t *const self) {
     return !argus_at_rest(&self->knowledge) || argus_motion_is_under_way(&self->motion);

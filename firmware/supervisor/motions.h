@@ -3,7 +3,7 @@
 #ifndef ARGUS_MOTIONS_H
 #define ARGUS_MOTIONS_H
 
-#include "supervisor/core.h"
+#include "behaviour/core.h"
 
 // The robot moves, or a motion may be on its way though the SIPs do not show it yet.
 bool argus_is_to_halt(const argus_t *self);

@@ -2,14 +2,14 @@
 // Turns the orders of an operator into settings and intents.
 #include "supervisor/orders.h"
 
+#include "behaviour/looks.h"
+#include "behaviour/state.h"
 #include "knowledge/angle.h"
 #include "supervisor/body.h"
 #include "supervisor/faults.h"
 #include "supervisor/journey.h"
-#include "supervisor/looks.h"
 #include "supervisor/modes.h"
 #include "supervisor/motions.h"
-#include "supervisor/state.h"
 
 static void check(const argus_t *const self, const argus_stop_t stop, const bool full,
                   argus_intent_t *const intent) {

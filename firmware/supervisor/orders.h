@@ -3,7 +3,7 @@
 #ifndef ARGUS_ORDERS_H
 #define ARGUS_ORDERS_H
 
-#include "supervisor/core.h"
+#include "behaviour/core.h"
 
 // False: it cannot be done, and nothing has changed.
 bool argus_obey(argus_t *self, argus_op_t op, int32_t argument);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Takes a ring and a body of the caller's own.
+#include "behaviour/core.h"
 #include "knowledge/body.h"
 #include "knowledge/config.h"
 #include "robot/make.h"
-#include "supervisor/core.h"
 
 static bool is_safe(const argus_config_t *const config, const argus_robot_t *const robot) {
     const int32_t fault = argus_config_check_for(config, robot).fault;

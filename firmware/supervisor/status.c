@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "awareness/names.h"
-#include "supervisor/state.h"
+#include "behaviour/state.h"
 
 static void copy_sonars(const argus_t *const self, argus_status_t *const status) {
     ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);

@@ -4,10 +4,10 @@
 
 #include <string.h>
 
+#include "behaviour/looks.h"
 #include "knowledge/body.h"
 #include "supervisor/faults.h"
 #include "supervisor/journey.h"
-#include "supervisor/looks.h"
 #include "supervisor/modes.h"
 
 // Which body it has is found out when its session opens; until then the one before holds.

@@ -3,7 +3,7 @@
 #ifndef ARGUS_STRANGER_H
 #define ARGUS_STRANGER_H
 
-#include "supervisor/core.h"
+#include "behaviour/core.h"
 
 // It is not driven until an operator says so, and nothing of what was known of the other one is kept.
 void argus_meet_stranger(argus_t *self);

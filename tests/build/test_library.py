@@ -119,6 +119,7 @@ def test_layers_point_one_way() -> None:
         "analysis",
         "adjustment",
         "task",
+        "behaviour",
         "supervisor",
         "guardian",
     ]

@@ -50,7 +50,7 @@ def test_one_finding_of_a_sonar_is_asked_for() -> None:
     engines = r"argus_(?:common_(?:convicts|doubts|excuses)|extremes_(?:convicts|keeps_out)|evidence_(?:names|convicts|holds))\("
     found = {
         path.relative_to(ROOT / "firmware").as_posix()
-        for path in sorted((ROOT / "firmware/supervisor").rglob("*.c"))
+        for path in sorted((ROOT / "firmware").glob("[bs]*/*.c"))
         if re.search(engines, path.read_text(encoding="utf-8"))
     }
     assert found == set()
@@ -58,13 +58,13 @@ def test_one_finding_of_a_sonar_is_asked_for() -> None:
 
 def test_the_travel_is_written_by_its_modes_and_by_journey_c_for_all_others() -> None:
     for field in ("jog_mm", "arriving", "stopped_short", "unsaid", "heeded_ms", "beside_sip"):
-        assert writers(field) <= {"supervisor/travel.c", "supervisor/journey.c"}, field
+        assert writers(field) <= {"behaviour/travel.c", "supervisor/journey.c"}, field
     changed = re.compile(
         r"argus_task_(?:set|restart|refuse|return|choose|escape|keep|progress|is_hopeless)\("
     )
     found = {
         path.name
-        for path in sorted((ROOT / "firmware/supervisor").glob("*.c"))
+        for path in sorted((ROOT / "firmware").glob("[bs]*/*.c"))
         if changed.search(path.read_text(encoding="utf-8"))
     }
     assert found == {"travel.c", "journey.c"}
@@ -83,3 +83,13 @@ def test_few_functions_may_write_the_whole_state() -> None:
         if re.search(r"(?<!const )\bargus_t \*", parameters)
     ]
     assert 40 < len(found) <= MAY_WRITE_ALL
+
+
+def test_behaviour_writes_no_whole_state() -> None:
+    """What a mode or a reflex wants is found by reading; supervisor/ alone carries it out."""
+    found = [
+        path.name
+        for path in sorted((ROOT / "firmware/behaviour").glob("*.[ch]"))
+        if path.name != "core.h" and re.search(r"(?<!const )\bargus_t \*", path.read_text(encoding="utf-8"))
+    ]
+    assert found == []

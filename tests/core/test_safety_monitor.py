@@ -60,7 +60,7 @@ MUTANTS: Final = (
         (
             ("awareness/alarms.c", r"range_mm <= config->object_range_mm", "range_mm <= 10"),
             (
-                "supervisor/travel.c",
+                "behaviour/travel.c",
                 r"if \(nearest_mm <= self->config.object_range_mm\)",
                 "if (nearest_mm <= 10)",
             ),
@@ -108,7 +108,7 @@ MUTANTS: Final = (
                 r"(?m)(^bool argus_all_fresh_since\((?:.|\n)*?\) \{\n)",
                 r"\1    return true;\n",
             ),
-            ("supervisor/resting.c", r"if \(mine->rounds > 1\)", "if (mine->rounds > 2)"),
+            ("behaviour/resting.c", r"if \(mine->rounds > 1\)", "if (mine->rounds > 2)"),
             (
                 "adjustment/guard.c",
                 r"counts && argus_age_ms\(self->knowledge, i, self->now_ms\) > limit_ms",

@@ -6,9 +6,9 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "behaviour/state.h"
 #include "knowledge/body.h"
 #include "robot.h"
-#include "supervisor/state.h"
 #include "unity.h"
 
 #define SONARS (ARGUS_SONARS < 16 ? ARGUS_SONARS : 16) // that its robot has, of those that a build manages

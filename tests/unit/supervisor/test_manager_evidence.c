@@ -9,10 +9,10 @@
 #include <string.h>
 
 #include "awareness/numbers.h"
+#include "behaviour/looks.h"
 #include "health.h"
 #include "robot.h"
 #include "supervisor/faults.h"
-#include "supervisor/looks.h"
 #include "supervisor/modes.h"
 #include "unity.h"
 

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "supervisor/core.h"
+#include "behaviour/core.h"
 #include "unity.h"
 
 #define STEP_MS 100

@@ -5,11 +5,11 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "behaviour/mode.h"
+#include "behaviour/reflexes.h"
+#include "behaviour/resting.h"
+#include "behaviour/travel.h"
 #include "robot.h"
-#include "supervisor/mode.h"
-#include "supervisor/reflexes.h"
-#include "supervisor/resting.h"
-#include "supervisor/travel.h"
 #include "unity.h"
 
 #define FEW_WORLDS 8u // all modes are seen in these

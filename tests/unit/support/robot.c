@@ -9,7 +9,7 @@
 
 #include "adjustment/guard.h"
 #include "knowledge/config.h"
-#include "supervisor/state.h"
+#include "behaviour/state.h"
 
 #define TICK_MS 10u
 #define TICK_S 0.01

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Rule: nothing moves that one of the reasons bars, whoever asks and whatever is asked for; where none holds
 // it may. Each reason alone, for both movers.
-#include "supervisor/permit.h"
+#include "behaviour/permit.h"
 
 #include <stdio.h>
 
+#include "behaviour/state.h"
 #include "robot.h"
-#include "supervisor/state.h"
 #include "unity.h"
 
 static robot_t robot;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Checks, verifies, idles, waits and backs away: one SIP of each mode.
-#include "supervisor/resting.h"
+#include "behaviour/resting.h"
 
+#include "behaviour/state.h"
 #include "knowledge/angle.h"
-#include "supervisor/state.h"
 
 #define RETRY_MS 1000u
 #define SAY_EVERY_S 10u

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Answers what several parts of the manager ask of its state.
-#include "supervisor/state.h"
+#include "behaviour/state.h"
 
 #include "knowledge/angle.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Looks up the tables of the modes.
-#include "supervisor/mode.h"
+#include "behaviour/mode.h"
 
 #define FROM_ANY                                                                        \
     (1u << ARGUS_MODE_CHECKING | 1u << ARGUS_MODE_VERIFYING | 1u << ARGUS_MODE_IDLE |   \

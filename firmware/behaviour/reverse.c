@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Lets the rear lead while the front has failed, and the front again when it is whole.
-#include "supervisor/reverse.h"
+// Compares the two ends of the robot.
+#include "behaviour/reverse.h"
 
+#include "behaviour/state.h"
 #include "knowledge/angle.h"
-#include "supervisor/faults.h"
-#include "supervisor/state.h"
 
 #define AGAIN_MM 2000u // driven since the last time
 #define MOST_PARTS 3   // two of three of those that face forward are most of them
@@ -64,19 +63,4 @@ bool argus_should_turn_about(const argus_t *const self) {
     const bool pays = argus_guard_may_step(&self->plan) ? has_driven(self) && is_better(self, other)
                                                         : can_go_on(self, other);
     return pays && is_safe(self, other); // the costliest question last
-}
-
-void argus_turn_about(argus_t *const self) {
-    const argus_robot_t *const other = argus_robot_other_end(self->knowledge.robot);
-    ARGUS_ASSERT(other != NULL && argus_at_rest(&self->knowledge));
-    argus_knowledge_turn_about(&self->knowledge, other);
-    self->reverse = (argus_reverse_t){.odometer_mm = self->knowledge.odometer_mm, .done = true};
-    argus_algorithm1_init(&self->algorithm1);
-    argus_extremes_restart(&self->extremes);
-    argus_slip_restart(&self->slip);
-    argus_base_drop(&self->base);
-    self->checked = false;
-    self->plan = argus_plan(other, argus_policy(self), 0, 0);
-    argus_emit(&self->events, ARGUS_EV_REVERSED, other->reversed ? 1 : 0);
-    argus_replan(self);
 }

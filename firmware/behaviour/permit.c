@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Asks who may move: session, operator, body, bumpers, and what a turn would sweep.
-#include "supervisor/permit.h"
+#include "behaviour/permit.h"
 
 #include "adjustment/guard.h"
 #include "adjustment/swing.h"
+#include "behaviour/state.h"
 #include "knowledge/angle.h"
-#include "supervisor/state.h"
 
 static bool meets(const argus_t *const self, const int32_t by_cdeg) {
     return argus_swing_meets(&self->knowledge, argus_rules(self)->remembers ? &self->echoes : NULL, by_cdeg);

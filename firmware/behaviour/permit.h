@@ -4,7 +4,7 @@
 #ifndef ARGUS_PERMIT_H
 #define ARGUS_PERMIT_H
 
-#include "supervisor/core.h"
+#include "behaviour/core.h"
 
 typedef enum {
     ARGUS_MOVER_MANAGER, // for a course, or an operator's step or turn

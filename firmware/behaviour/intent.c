@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What most intents are filled in with.
-#include "supervisor/intent.h"
+#include "behaviour/intent.h"
 
 void argus_to_check(argus_intent_t *const intent, const bool full) {
     intent->act = ARGUS_DO_CHECK;

@@ -4,8 +4,8 @@
 #ifndef ARGUS_TRAVEL_H
 #define ARGUS_TRAVEL_H
 
-#include "supervisor/core.h"
-#include "supervisor/intent.h"
+#include "behaviour/core.h"
+#include "behaviour/intent.h"
 
 // Each says on every SIP what is to be done, and writes the state of the travel alone.
 void argus_run_driving(const argus_t *self, argus_travel_t *mine, argus_intent_t *intent);

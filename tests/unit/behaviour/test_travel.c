@@ -2,7 +2,7 @@
 // Rule under attack: the robot drives as fast as what it sees ahead allows (S5), no faster than the robot
 // itself lets it, and turns while it drives only by angles that the sonars ahead see and with its swing
 // circle free. The paper's rules know neither.
-#include "supervisor/travel.h"
+#include "behaviour/travel.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack: the tables of the modes say the same as the safety rules and as each other.
-#include "supervisor/mode.h"
+#include "behaviour/mode.h"
 
 #include "unity.h"
 

@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Which end of the robot leads: the rear while the front has failed (profile argus).
-#ifndef ARGUS_SUPERVISOR_REVERSE_H
-#define ARGUS_SUPERVISOR_REVERSE_H
+#ifndef ARGUS_REVERSE_H
+#define ARGUS_REVERSE_H
 
-#include "supervisor/core.h"
+#include "behaviour/core.h"
 
 // The other end would do better. The one that leads cannot go on, has lost most of its sonars, or is the rear
 // though the front is whole. Not twice within 2 m of driving unless it cannot go on; never for an operator's
 // step. Cost: one plan.
 bool argus_should_turn_about(const argus_t *self);
-
-// At rest: the other end leads from now on; nothing translates before a full check. The way to its heading is
-// an ordinary turn, under S7.
-void argus_turn_about(argus_t *self);
 
 #endif

@@ -2,15 +2,15 @@
 // Rule under attack (profile argus): a look must pay. None comes by the clock, for a doubt without a name, or
 // for a name that others see for; one comes at once where none does, when the time lost has reached what a
 // look costs and not before, and when an operator asks.
-#include "supervisor/looks.h"
+#include "behaviour/looks.h"
 
 #include <stdio.h>
 
 #include "adjustment/guard.h"
 #include "awareness/numbers.h"
+#include "behaviour/state.h"
 #include "knowledge/config.h"
 #include "robot.h"
-#include "supervisor/state.h"
 #include "unity.h"
 
 #define SONARS (ARGUS_SONARS < 16 ? ARGUS_SONARS : 16) // that its robot has, of those that a build manages

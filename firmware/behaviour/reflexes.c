@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Sees what calls for a STOP, or for an event, in one SIP.
-#include "supervisor/reflexes.h"
+#include "behaviour/reflexes.h"
 
 #include "adjustment/grazing.h"
+#include "behaviour/mode.h"
+#include "behaviour/state.h"
 #include "knowledge/angle.h"
-#include "supervisor/mode.h"
-#include "supervisor/state.h"
 
 #define LOST_DEG 30        // what looks farther aside passes by what it loses
 #define LOW_BATTERY_DV 115 // where CONFIGpac names none

@@ -3,8 +3,8 @@
 #ifndef ARGUS_RESTING_H
 #define ARGUS_RESTING_H
 
-#include "supervisor/core.h"
-#include "supervisor/intent.h"
+#include "behaviour/core.h"
+#include "behaviour/intent.h"
 
 // Each says on every SIP what is to be done, and writes its own state alone.
 void argus_run_checking(const argus_t *self, argus_checking_t *mine, argus_intent_t *intent);

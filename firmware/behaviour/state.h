@@ -4,8 +4,8 @@
 #define ARGUS_STATE_H
 
 #include "adjustment/guard.h"
-#include "supervisor/core.h"
-#include "supervisor/intent.h"
+#include "behaviour/core.h"
+#include "behaviour/intent.h"
 
 // Which rules run.
 static inline const argus_profile_t *argus_rules(const argus_t *const self) {

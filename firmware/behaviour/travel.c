@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Drives: normally, and in failure mode sweep by sweep and step by step.
-#include "supervisor/travel.h"
+#include "behaviour/travel.h"
 
+#include "behaviour/looks.h"
+#include "behaviour/state.h"
 #include "knowledge/angle.h"
-#include "supervisor/looks.h"
-#include "supervisor/state.h"
 
 #define AIM_CDEG 1000     // a bearing farther off than this is turned to at rest
 #define GENTLE_CDEG 4000  // ... a new leg up to here while it drives: what the front sonars see lies there

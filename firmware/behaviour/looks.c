@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Weighs a look against the stop that it costs, and draws the conclusions.
-#include "supervisor/looks.h"
+// Weighs a look against the stop that it costs.
+#include "behaviour/looks.h"
 
 #include "arcos/gen_arcos.h"
+#include "behaviour/state.h"
 #include "knowledge/angle.h"
-#include "supervisor/faults.h"
-#include "supervisor/state.h"
 
 argus_mask_t argus_doubted(const argus_t *const self) {
     ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
@@ -91,64 +90,4 @@ argus_fault_kind_t argus_named_kind(const argus_t *const self, const int sonar,
         return ARGUS_KIND_OFF; // it fails with the whole of its array
     }
     return kind == ARGUS_KIND_SLOW && self->looks.hold[sonar].lawless ? ARGUS_KIND_WRONG : kind;
-}
-
-void argus_leave_open(const argus_knowledge_t *const knowledge, argus_algorithm1_t *const algorithm1,
-                      argus_events_t *const events, const argus_mask_t sonars) {
-    ARGUS_ASSERT((sonars & ~(unsigned)argus_robot_all(knowledge->robot)) == 0);
-    ARGUS_ASSERT((sonars & argus_out(knowledge)) == 0);
-    for (int i = 0; i < knowledge->sonars; i++) {
-        if ((sonars >> i & 1u) != 0) {
-            argus_algorithm1_settle(algorithm1, i);
-            argus_emit_of(events, ARGUS_EV_SONAR_UNPROVEN, i, knowledge->sonar[i].reading_mm);
-        }
-    }
-}
-
-// A name that looks do not clear while nothing moves about. For that alone others have looked along its
-// bearing, each time anew (paper: Algorithm 2). What its own readings tell, looks do not prove, nor anything
-// of one at the end of an array. A look that leaves it another name neither proves nor clears.
-static bool is_proved(const argus_t *const self, argus_looks_t *const looks, const int sonar,
-                      const argus_fault_kind_t kind) {
-    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    ARGUS_ASSERT((unsigned)kind < ARGUS_KINDS);
-    const bool beset = argus_robot_faces_forward(self->knowledge.robot, sonar); // neighbours on either side
-    const bool by_others = beset && (kind == ARGUS_KIND_OFF || kind == ARGUS_KIND_WRONG);
-    if (!by_others || kind != self->knowledge.sonar[sonar].kind || self->evidence.busy) {
-        return false;
-    }
-    return argus_looks_prove(looks, sonar);
-}
-
-// What the looks have shown of one sonar.
-static void conclude(argus_t *const self, const int sonar) {
-    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    const bool suspect = self->knowledge.sonar[sonar].health == ARGUS_SUSPECT;
-    const bool asked = suspect || (self->verifying.inquiry.suspects >> sonar & 1u) != 0;
-    if (argus_is_out(&self->knowledge, sonar)) {
-        return;
-    }
-    const argus_finding_t finding = argus_finding(&self->evidence, &self->extremes, &self->common, sonar);
-    const argus_fault_kind_t kind = argus_named_kind(self, sonar, &finding);
-    if (asked && kind == ARGUS_KIND_NONE) {
-        argus_looks_clear(&self->looks, &self->knowledge, sonar);
-        if (suspect) {
-            argus_emit_change(&self->events, &self->knowledge, sonar, ARGUS_CHANGE_CLEARED, ARGUS_KIND_NONE,
-                              self->knowledge.sonar[sonar].reading_mm);
-        }
-    } else if (suspect && is_proved(self, &self->looks, sonar, kind)) {
-        argus_disable(self, sonar, kind);
-    } else if (suspect) {
-        argus_leave_open(&self->knowledge, &self->algorithm1, &self->events, (argus_mask_t)(1u << sonar));
-    }
-}
-
-void argus_conclude_looks(argus_t *const self) {
-    ARGUS_ASSERT(self->knowledge.sonars <= ARGUS_SONARS);
-    ARGUS_ASSERT(!self->verifying.inquiry.active);
-    for (int i = 0; i < self->knowledge.sonars; i++) {
-        conclude(self, i);
-    }
-    argus_looks_over(&self->looks);
-    argus_replan(self);
 }

@@ -3,8 +3,8 @@
 #ifndef ARGUS_REFLEXES_H
 #define ARGUS_REFLEXES_H
 
-#include "supervisor/core.h"
-#include "supervisor/intent.h"
+#include "behaviour/core.h"
+#include "behaviour/intent.h"
 
 // X(NAME, last, meaning): `last` 1: once it acts, those behind it are not asked in this SIP.
 #define ARGUS_REFLEX_TABLE(X)                                                                         \

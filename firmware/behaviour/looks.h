@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Which sonars are worth a look, and what the looks have shown (profile argus).
+// Which sonars are worth a look (profile argus).
 #ifndef ARGUS_LOOKS_H
 #define ARGUS_LOOKS_H
 
 #include "awareness/finding.h"
-#include "supervisor/core.h"
+#include "behaviour/core.h"
 
 // Sonars in use that the evidence suspects.
 argus_mask_t argus_doubted(const argus_t *self);
@@ -26,14 +26,5 @@ argus_mask_t argus_to_settle(const argus_t *self);
 // The kind that the evidence gives it (NONE: none): `wrong` where a law of its readings was named and given
 // up.
 argus_fault_kind_t argus_named_kind(const argus_t *self, int sonar, const argus_finding_t *finding);
-
-// The looks are over: each sonar that was asked is cleared, given up or left open.
-void argus_conclude_looks(argus_t *self);
-
-// They are not to be looked at in this place, and covered for like those that are out.
-void argus_leave_open(const argus_knowledge_t *knowledge, argus_algorithm1_t *algorithm1,
-                      argus_events_t *events, argus_mask_t sonars);
-
-// What is remembered of looks; looks.c is its only writer ---------------------------------------------------
 
 #endif
