@@ -90,7 +90,8 @@ def test_a_manager_that_reads_a_log_is_passive() -> None:
 def test_a_package_that_is_not_installed_is_named(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     with pytest.MonkeyPatch.context() as patch:
         patch.setitem(sys.modules, "mcap", None)
-        patch.setitem(sys.modules, "mcap.writer", None)
+        for module in ("data_stream", "opcode", "records"):
+            patch.setitem(sys.modules, f"mcap.{module}", None)
         patch.delitem(sys.modules, "argus_tools.log.mcap_out", raising=False)
         assert log_cli(["convert", str(SAMPLE), str(tmp_path / "x.mcap")]) == 2
     assert capsys.readouterr().err == (

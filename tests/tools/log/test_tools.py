@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 import errno
+import gzip
 import json
+import math
 import os
 import re
 import struct
@@ -14,7 +16,9 @@ import xml.etree.ElementTree
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
+import zstandard
 from argus_tools.formats import LogError
 from argus_tools.log import plot
 from argus_tools.log.common import binary_output
@@ -23,10 +27,13 @@ from argus_tools.log.spans import DEAD, SUSPECT, Happening, Span, spans
 from logs import CAPTURES, capture_bytes, command, decode, jsonl, run, sip
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from mcap.reader import make_reader
+from rosbags.rosbag2 import Reader
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from hil_sim.tables import load
 
 RAM = CAPTURES / "d_ram.jsonl"
+SAMPLE = Path(__file__).resolve().parents[3] / "docs" / "samples" / "two-failing-sonars.rec.gz"
 
 
 def stats(path: Path, *arguments: str) -> dict[str, Any]:
@@ -104,92 +111,114 @@ def test_convert_refuses_what_it_cannot_do(tmp_path: Path) -> None:
     assert copy.read_bytes() == RAM.read_bytes()
 
 
-def test_mcap_has_poses_validity_odometry_and_events(tmp_path: Path) -> None:
-    made = tmp_path / "a.mcap"
-    assert run("convert", RAM, made).returncode == 0
-    poses = {pose["number"]: pose for pose in load("robots/p3dx-sh")["sonar"]["pose"]}
-    sips = decode(RAM, "--type", "SIP")
-    with made.open("rb") as file:
-        reader = make_reader(file)
-        summary = reader.get_summary()
-        assert summary is not None
-        schemas = {schema.name: json.loads(schema.data) for schema in summary.schemas.values()}
-        assert {"argus.SonarRange", "foxglove.PoseInFrame", "foxglove.Log"} <= set(schemas)
-        messages = [
-            (s.name, c.topic, m.log_time, json.loads(m.data)) for s, c, m in reader.iter_messages() if s
-        ]
-    for name, _, _, message in messages:
-        assert set(message) <= set(schemas[name]["properties"])
-    beams = [message["entities"] for _, topic, _, message in messages if topic == "/sonar/beams"]
-    assert [len(entities) for entities in beams] == [len(row["sonar"]) for row in sips if row["sonar"]]
-    ranges = [(at, message) for _, topic, at, message in messages if topic == "/sonar/03"]
-    assert [message["range_mm"] for _, message in ranges] == [row["sonar"]["3"] for row in sips]
-    assert [at for at, _ in ranges] == [round(row["t"] * 1e9) for row in sips]
-    for _, message in ranges:
-        assert message["valid"] == (100 <= message["range_mm"] < 5000)
-        assert message["pose"]["position"]["x"] == poses[3]["x_mm"] / 1000
-        assert message["field_of_view_rad"] == pytest.approx(0.5236, abs=1e-4)
-    assert sum(topic == "/odometry" for _, topic, _, _ in messages) == len(sips)
-    assert sum(topic == "/events" for _, topic, _, _ in messages) == 303 - len(sips)
-
-
-def conflicts(value: Any, schema: dict[str, Any], where: str = "") -> list[str]:
-    """Where a value is not what its schema, of the kinds used here, says."""
-    kinds: dict[str, Any] = {
-        "object": dict,
-        "array": list,
-        "string": str,
-        "boolean": bool,
-        "integer": int,
-        "number": (int, float),
-    }
-    kind = kinds[schema["type"]]
-    if not isinstance(value, kind) or (isinstance(value, bool) and kind is not bool):
-        return [f"{where}: {value!r} is no {schema['type']}"]
-    if isinstance(value, list):
-        item = schema.get("items")
-        return [] if item is None else [c for one in value for c in conflicts(one, item, f"{where}[]")]
-    if not isinstance(value, dict):
-        return [] if value >= schema.get("minimum", value) else [f"{where}: {value!r} is too small"]
-    known = schema["properties"]
-    found = [f"{where}.{name}: not in the schema" for name in value if name not in known]
-    for name in value.keys() & known.keys():
-        found += conflicts(value[name], known[name], f"{where}.{name}")
+def messages_of(path: Path) -> dict[str, list[tuple[int, Any]]]:
+    """Every message of an MCAP by its topic, read by the definitions that the file has, with its time in ns."""
+    found: dict[str, list[tuple[int, Any]]] = {}
+    with Reader(path) as reader:
+        stores = {}
+        for connection in reader.connections:
+            stores[connection.id] = get_typestore(Stores.EMPTY)
+            stores[connection.id].register(get_types_from_msg(connection.msgdef.data, connection.msgtype))
+        for connection, t_ns, raw in reader.messages():
+            message = stores[connection.id].deserialize_cdr(raw, connection.msgtype)
+            found.setdefault(connection.topic, []).append((t_ns, message))
     return found
 
 
-# As its documentation gives them, docs.foxglove.dev/docs/sdk/schemas.
-FOXGLOVE = {
-    "foxglove.Log": {"timestamp", "level", "message", "name", "file", "line"},
-    "foxglove.PoseInFrame": {"timestamp", "frame_id", "pose"},
-    "foxglove.FrameTransform": {"timestamp", "parent_frame_id", "child_frame_id", "translation", "rotation"},
-    "foxglove.SceneUpdate": {"deletions", "entities"},
-}
-OPTIONAL = {"range_m", "pose", "age_ms", "health", "fault"}
+def test_mcap_has_sips_places_points_and_events(tmp_path: Path) -> None:
+    made = tmp_path / "a.mcap"
+    assert run("convert", RAM, made).returncode == 0
+    sips = decode(RAM, "--type", "SIP")
+    found = messages_of(made)
+    assert {topic: len(messages) for topic, messages in found.items()} == {
+        "/sip": len(sips),
+        "/tf": len(sips),
+        "/sonar/points": len(sips),
+        "/events": 303 - len(sips),
+    }
+    poses = {pose["number"]: pose for pose in load("robots/p3dx-sh")["sonar"]["pose"]}
+    for row, (at, sip_), (_, tf), (_, cloud) in zip(
+        sips, found["/sip"], found["/tf"], found["/sonar/points"], strict=True
+    ):
+        assert at == round(row["t"] * 1e9) == sip_.stamp.sec * 10**9 + sip_.stamp.nanosec
+        readings = {str(n): mm for n, mm in zip(sip_.sonar.tolist(), sip_.range_mm.tolist(), strict=True)}
+        assert readings == row["sonar"]
+        for name in (
+            "x_mm",
+            "y_mm",
+            "heading_deg",
+            "vel_left_mm_s",
+            "battery_v",
+            "flags",
+            "motors",
+            "moving",
+        ):
+            assert getattr(sip_, name) == row[name], name
+        place = tf.transforms[0].transform
+        assert place.translation.x == pytest.approx(row["x_mm"] / 1000, abs=1e-5)
+        turned = math.degrees(2 * math.atan2(place.rotation.z, place.rotation.w))
+        assert (turned - row["heading_deg"] + 180) % 360 == pytest.approx(180, abs=1e-3)
+        points = np.frombuffer(cloud.data.tobytes(), "<f4").reshape(-1, 3)
+        assert [field.name for field in cloud.fields] == ["x", "y", "z"]
+        assert cloud.width * cloud.point_step == cloud.row_step == len(cloud.data)
+        for (number, mm), (x, y, _) in zip(row["sonar"].items(), points, strict=True):
+            if mm >= 5000:
+                assert math.isnan(x)
+                continue
+            pose = poses[int(number)]
+            heading = math.radians(pose["heading_deg"])
+            assert x == pytest.approx((pose["x_mm"] + mm * math.cos(heading)) / 1000, abs=1e-4)
+            assert y == pytest.approx((pose["y_mm"] + mm * math.sin(heading)) / 1000, abs=1e-4)
 
 
 @pytest.mark.tour(2)
 @pytest.mark.parametrize("path", sorted(CAPTURES.glob("*.jsonl")), ids=lambda path: path.stem)
-def test_every_message_of_an_mcap_is_as_its_schema_says(path: Path, tmp_path: Path) -> None:
+def test_every_packet_is_in_the_mcap_and_both_readers_agree(path: Path, tmp_path: Path) -> None:
     made = tmp_path / "a.mcap"
     assert run("convert", path, made).returncode == 0
-    seen = set()
+    found = messages_of(made)
+    assert len(found.get("/sip", [])) + len(found.get("/events", [])) == len(decode(path))
+    times: dict[str, list[int]] = {}
     with made.open("rb") as file:
         for schema, channel, message in make_reader(file).iter_messages():
             assert schema is not None
-            assert (schema.encoding, channel.message_encoding) == ("jsonschema", "json")
-            rules, value = json.loads(schema.data), json.loads(message.data)
-            assert conflicts(value, rules, channel.topic) == []
-            assert rules["properties"].keys() - value.keys() <= OPTIONAL
-            stamped = value["entities"][0] if schema.name == "foxglove.SceneUpdate" else value
-            assert stamped["timestamp"] == dict(
-                zip(("sec", "nsec"), divmod(message.log_time, 10**9), strict=True)
-            )
-            if schema.name.startswith("foxglove."):
-                assert value.keys() == FOXGLOVE[schema.name]
-            seen.add(schema.name)
-    # One of the captures is of a robot without sonars.
-    assert seen | {"foxglove.SceneUpdate"} >= FOXGLOVE.keys() | {"argus.RobotState"}
+            assert (schema.encoding, channel.message_encoding) == ("ros2msg", "cdr")
+            times.setdefault(channel.topic, []).append(message.log_time)
+    assert times == {topic: [at for at, _ in messages] for topic, messages in found.items()}
+    for at, event in found.get("/events", []):
+        assert event.stamp.sec * 10**9 + event.stamp.nanosec == at
+        assert event.level in (20, 40)
+
+
+def test_the_index_of_an_mcap_leads_to_each_message(tmp_path: Path) -> None:
+    made = tmp_path / "a.mcap"
+    assert run("convert", RAM, made).returncode == 0
+    data = made.read_bytes()
+    with made.open("rb") as file:
+        summary = make_reader(file, validate_crcs=True).get_summary()
+    assert summary is not None
+    seen = 0
+    for index in summary.chunk_indexes:
+        assert index.compression == "zstd"
+        start = index.chunk_start_offset
+        packed = data[start + index.chunk_length - index.compressed_size : start + index.chunk_length]
+        chunk = zstandard.decompress(packed, max_output_size=index.uncompressed_size)
+        for channel, at in index.message_index_offsets.items():
+            opcode, _, number, size = struct.unpack_from("<BQHI", data, at)
+            assert (opcode, number) == (7, channel)
+            for t_ns, place in struct.iter_unpack("<QQ", data[at + 15 : at + 15 + size]):
+                mark, _, of, _, log_time, _ = struct.unpack_from("<BQHIQQ", chunk, place)
+                assert (mark, of, log_time) == (5, channel, t_ns)
+                seen += 1
+    assert summary.statistics is not None
+    assert seen == summary.statistics.message_count
+
+
+def test_an_mcap_is_smaller_than_the_recording(tmp_path: Path) -> None:
+    recording, made = tmp_path / "a.rec", tmp_path / "a.mcap"
+    recording.write_bytes(gzip.decompress(SAMPLE.read_bytes()))
+    assert run("convert", recording, made).returncode == 0
+    assert made.stat().st_size < 1.5 * recording.stat().st_size
 
 
 def test_diff_names_the_field_that_differs(tmp_path: Path) -> None:

@@ -16,7 +16,7 @@ from argus_tools.catalogue import HELP
 from argus_tools.chunks import Chunk, DamageList, Format, LogError, Reader, ReadOptions, begins
 from argus_tools.rings.own import OwnLog, is_own
 from argus_tools.rings.packets import RangeLog
-from argus_tools.rings.recording import Bag, JsonMcap, Recording
+from argus_tools.rings.recording import Bag, OwnMcap, Recording
 
 _ROS1: Final = b"#ROSBAG V2.0\n"
 _SQLITE: Final = b"SQLite format 3\0"
@@ -79,8 +79,8 @@ def _opened(stream: BufferedReader, options: ReadOptions, suffix: str) -> Record
 
 def _recording(path: Path, suffix: str, options: ReadOptions) -> Recording:
     if suffix == ".mcap" and not path.is_dir():
-        own = JsonMcap(path, options.name)
-        if "json" in own.encodings:
+        own = OwnMcap(path, options.name)
+        if own.topics:
             return own
         own.close()
     return Bag(path, suffix == ".bag", options.name)

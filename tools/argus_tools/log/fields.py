@@ -54,6 +54,7 @@ _HEADING_TEXT: Final = tuple(map(repr, HEADINGS))
 _STATE: Final = (
     "battery_v", "stall_left", "stall_right", "bumpers_front", "bumpers_rear", "moving", "motors", "flags", "compass",
 )  # fmt: skip
+_COMMON: Final = frozenset(("t", "offset", "dir", "type", "ok"))
 _TYPE_AND_OK: Final = itemgetter(3, 4)
 _ALL_SIPS: Final = {("SIP", True)}
 
@@ -159,10 +160,11 @@ class Decoder:
         except PacketError as error:
             return {**found, "ok": False, "bytes": len(row.wire), "error": str(error), "hex": row.wire.hex()}
         if isinstance(packet, Sip):
-            return found | self._sip_fields(packet)
+            return found | self.sip_fields(packet)
         return found | _packet_fields(packet)
 
-    def _sip_fields(self, sip: Sip) -> dict[str, Any]:
+    def sip_fields(self, sip: Sip) -> dict[str, Any]:
+        """Return what a SIP holds, with the position of the last one that was tracked."""
         tenths = sip.battery if sip.battery_x10 is None else sip.battery_x10
         found = {
             "x_mm": self.x_mm,
@@ -184,6 +186,11 @@ class Decoder:
         tail = {name: getattr(sip, name) for name in _TAIL}
         found |= {name: value for name, value in tail.items() if value is not None}
         return found | ({"rest": sip.rest.hex()} if sip.rest else {})
+
+    def json_detail(self, row: Row) -> str:
+        """Return as JSON what a packet holds beside its time, place, direction and name."""
+        fields = self.fields(row)
+        return json.dumps({name: value for name, value in fields.items() if name not in _COMMON})
 
     def json(self, row: Row) -> str:
         """Return `fields` as one line of JSON."""
@@ -326,7 +333,7 @@ class Decoder:
         key = data[:1] + data[11:19] + data[tail_at:]
         found = self._states.get(key)
         if found is None:
-            fields = self._sip_fields(Sip.decode(data))
+            fields = self.sip_fields(Sip.decode(data))
             state = json.dumps({name: fields[name] for name in _STATE})[1:-1]
             tail = json.dumps({name: fields[name] for name in _TAIL if name in fields})[1:-1]
             found = state, ", " + tail if tail else ""

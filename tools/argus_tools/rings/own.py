@@ -12,6 +12,7 @@ from argus_tools.chunks import ROBOT_TO_CLIENT, Chunk, Damage, DamageList, Offse
 from argus_tools.rings.motion import Motion
 from argus_tools.rings.packet import identity_of, sip_of
 from argus_tools.rings.recording import Broken, Message, Recording, Topic
+from argus_tools.ros2_messages import SIP
 from hil_sim.arcos import Sip, frame
 from hil_sim.tables.robot import DEFAULT_ROBOT, robot_table
 
@@ -22,7 +23,8 @@ _MM: Final = 1000
 
 def is_own(topics: list[Topic]) -> bool:
     """Whether a recording has the topics of Argus itself."""
-    return {STATE, RANGE} <= {topic.type for topic in topics}
+    kinds = {topic.type for topic in topics}
+    return SIP in kinds or {STATE, RANGE} <= kinds
 
 
 class OwnLog:
@@ -49,6 +51,10 @@ class OwnLog:
         ranges: dict[int, int] = {}
         for message in self._whole(recording):
             self.place = f"{message.topic} at {message.t:.3f} s"
+            if message.type == SIP:
+                body = message.body
+                yield round(message.t, 6), self._sip(body, dict(zip(body.sonar, body.range_mm, strict=True)))
+                continue
             if message.type == RANGE:
                 ranges[int(message.body.sonar)] = int(message.body.range_mm)
                 continue
@@ -59,7 +65,7 @@ class OwnLog:
             yield round(state.t, 6), self._sip(state.body, ranges)
 
     def _whole(self, recording: Recording) -> Iterator[Message]:
-        wanted = [topic.name for topic in recording.topics if topic.type in (STATE, RANGE)]
+        wanted = [topic.name for topic in recording.topics if topic.type in (SIP, STATE, RANGE)]
         try:
             yield from recording.messages(wanted)
         except Broken as error:

@@ -15,6 +15,7 @@ from types import SimpleNamespace
 from typing import Any, Final, NamedTuple, Protocol
 
 from argus_tools.chunks import LogError
+from argus_tools.ros2_messages import SIP, read_sip
 
 _NANO: Final = 1_000_000_000
 SONAR_ARRAY: Final = "p2os_msgs/msg/SonarArray"
@@ -118,8 +119,8 @@ class Bag:
             self._reader.close()
 
 
-class JsonMcap:
-    """An MCAP of JSON messages, as `argus-log convert` and the Foxglove bridge write it."""
+class OwnMcap:
+    """An MCAP with SIPs, as `argus-log convert` writes it, or of JSON messages, as of the Foxglove bridge."""
 
     def __init__(self, path: Path, name: str) -> None:
         from mcap.reader import make_reader
@@ -136,18 +137,21 @@ class JsonMcap:
                 f"{name}: an MCAP file without an index, as of a recorder that was killed: mcap recover FILE"
             )
         counts = summary.statistics.channel_message_counts
-        self.encodings = {channel.message_encoding for channel in summary.channels.values()}
         self.topics = [
             Topic(channel.topic, summary.schemas[channel.schema_id].name, counts.get(number, 0))
             for number, channel in summary.channels.items()
-            if channel.message_encoding == "json" and channel.schema_id in summary.schemas
+            if channel.schema_id in summary.schemas
+            and (channel.message_encoding == "json" or summary.schemas[channel.schema_id].name == SIP)
         ]
 
     def messages(self, topics: Iterable[str]) -> Iterator[Message]:
         """Yield the messages of these topics by their log time."""
         try:
             for schema, channel, message in self._reader.iter_messages(topics=list(topics)):
-                if schema is not None and channel.message_encoding == "json":
+                if schema is not None and schema.name == SIP:
+                    fields = SimpleNamespace(**read_sip(message.data))
+                    yield Message(channel.topic, schema.name, message.log_time / _NANO, fields)
+                elif schema is not None and channel.message_encoding == "json":
                     body = json.loads(message.data, object_hook=lambda fields: SimpleNamespace(**fields))
                     yield Message(channel.topic, schema.name, message.log_time / _NANO, body)
         except Exception as error:
