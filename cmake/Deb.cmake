@@ -37,6 +37,12 @@ string(STRIP "${argus_licence}" argus_licence)
 string(PREPEND argus_licence " ")
 configure_file(${deb_dir}/copyright.in ${made}/copyright @ONLY)
 
+# The project's address, where pyproject.toml has one.
+file(STRINGS ${PROJECT_SOURCE_DIR}/pyproject.toml homepage REGEX "^Homepage = \"[^\"]+\"")
+if(homepage)
+    string(REGEX REPLACE "^Homepage = \"([^\"]+)\".*" "\\1" CPACK_DEBIAN_PACKAGE_HOMEPAGE "${homepage}")
+endif()
+
 # Each package: its name, section, what it says of itself, and what every Debian package documents.
 function(argus_deb component name section summary text)
     string(TOUPPER ${component} upper)

@@ -2,6 +2,7 @@
 """The site of the documents: `tools/dev docs` makes build/site/index.html. A warning is an error."""
 
 import re
+import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,10 @@ ROOT = Path(__file__).resolve().parent.parent
 HEADER = (ROOT / "firmware/include/argus/argus.h").read_text(encoding="utf-8")
 VERSION = re.search(r'#define ARGUS_VERSION "([^"]+)"', HEADER)
 assert VERSION is not None
+PROJECT = ROOT / "pyproject.toml"
+URLS = (
+    tomllib.loads(PROJECT.read_text(encoding="utf-8"))["project"].get("urls", {}) if PROJECT.exists() else {}
+)
 
 project = "Argus"
 author = "Argus contributors"
@@ -43,7 +48,13 @@ html_theme = "furo"
 html_title = f"Argus {release}"
 html_show_sphinx = False
 html_copy_source = False
-html_theme_options = {"navigation_with_keys": True}
+html_theme_options: dict[str, Any] = {"navigation_with_keys": True}
+if "Homepage" in URLS:
+    html_theme_options |= {
+        "source_repository": URLS["Homepage"],
+        "source_branch": "main",
+        "source_directory": "",
+    }
 html_css_files = ["site.css"]
 html_static_path = ["site"]
 pygments_style = "a11y-high-contrast-light"

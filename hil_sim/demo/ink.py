@@ -26,7 +26,7 @@ MARGIN_MM: Final = 1500.0
 """Room for words to the right of the map."""
 FAULT_WORDS: Final = {
     "off": "goes dead:\nit reads 5000 from here on",
-    "wrong": "lies from here on:\nit reads half the truth",
+    "wrong": "goes wrong:\nit reads half the range from here on",
     "silent": "falls silent:\nno reading from here on",
 }
 

@@ -179,7 +179,7 @@ def legend(axes: Axes, drive: Drive) -> None:
         (_is_doubted(drive), dot("p", ORANGE, INK, 9, "it is doubted: others are relied on")),
         (any(f.diagnosed for f in findings), dot("D", SKY, INK, 8, "it is proved")),
         (False in echoes, dot(".", GREEN, GREEN, 7, "echo, healthy front sonar")),
-        (True in echoes, dot("x", PURPLE, PURPLE, 6, "false echo, lying sonar")),
+        (True in echoes, dot("x", PURPLE, PURPLE, 6, "false echo, failed sonar")),
     ]
     entries = [entry for there, entry in known if there]
     axes.axis("off")

@@ -152,7 +152,7 @@ def test_a_log_is_judged_from_the_command_line(clean_venv: Path) -> None:
     not shutil.which("aarch64-linux-gnu-gcc") or not shutil.which("qemu-aarch64"),
     reason="gcc-aarch64-linux-gnu and qemu-user are not installed",
 )
-def test_the_wheel_for_aarch64_holds_libraries_that_run_there(tmp_path: Path) -> None:
+def test_the_wheel_for_aarch64_holds_libraries_and_argusd_that_run_there(tmp_path: Path) -> None:
     [wheel] = DIST.glob("argus_p3dx-*_aarch64.whl")
     with zipfile.ZipFile(wheel) as archive:
         archive.extractall(tmp_path)
@@ -163,6 +163,10 @@ def test_the_wheel_for_aarch64_holds_libraries_that_run_there(tmp_path: Path) ->
     # By its soname, as the linker notes it.
     soname = re.search(r"SONAME.*\[(\S+)\]", run("readelf", "-d", library))
     assert soname
+    argusd = tmp_path / "argus_tools/argusd"
+    argusd.chmod(0o755)
+    assert "NEEDED" not in run("readelf", "-d", argusd)
+    assert run("qemu-aarch64", argusd, "--version").strip() == f"argusd {argus.__version__}"
     library.rename(tmp_path / soname[1])
     run("aarch64-linux-gnu-gcc", "-std=c11", include, *sources, tmp_path / soname[1], "-o", program)
     emulator = ["qemu-aarch64", "-L", "/usr/aarch64-linux-gnu", "-E", f"LD_LIBRARY_PATH={tmp_path}"]

@@ -128,7 +128,15 @@ def test_long_lines_stay_inside_too(tmp_path: Path) -> None:
 
 def test_the_words_say_what_happened(good: Drawn, bad: Drawn) -> None:
     words = "\n".join(good.boxes)
-    for wanted in ("A made-up drive", "Passed:", "Sonar 3 goes dead", "Sonar 6 lies", "Start", "Goal", "1 m"):
+    for wanted in (
+        "A made-up drive",
+        "Passed:",
+        "Sonar 3 goes dead",
+        "Sonar 6 goes wrong",
+        "Start",
+        "Goal",
+        "1 m",
+    ):
         assert wanted in words, wanted
     words = "\n".join(bad.boxes)
     for wanted in ("Failed:", "never proved", "Sonar 2 is healthy, yet", "Collision at"):

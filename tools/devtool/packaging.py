@@ -20,13 +20,14 @@ from typing import Final
 from devtool.base import BUILD, CORES, EXIT_USAGE, ROOT, VENV, Run, Stop, say, shown
 from devtool.commands import quietly
 from devtool.setup import HEADER, alone, ensure
-from devtool.stages import making
+from devtool.stages import StageFailed, making
 
 DIST: Final = ROOT / "dist"
 WORK: Final = BUILD / "package"
 HERE: Final = platform.machine()
 ARM: Final = "aarch64"
 ARCHITECTURES: Final = ("x86_64", ARM)
+DEBIAN_OF: Final = {"x86_64": "amd64", ARM: "arm64"}
 NEEDS: Final = ("dpkg-dev", "lintian", "systemd", *((ARM, "qemu-user") if HERE == "x86_64" else ()))
 """What the tests of the packages take."""
 BROUGHT: Final = ("argusd", "argusd-licences.txt")
@@ -55,6 +56,39 @@ def needs_of(arch: str) -> list[str]:
     return [arch]
 
 
+def foreign_libraries(arch: str, run: Run) -> Path | None:
+    """Unpack Debian's inih and ncurses for ARCH into the build folder; None where apt has none.
+
+    Nothing of the system is changed: apt looks at lists of its own.
+    """
+    place = WORK / f"libraries-{arch}"
+    root = place / "root"
+    if (root / "usr/include/ini.h").exists() and (root / "usr/include/curses.h").exists():
+        return root
+    if shutil.which("apt-get") is None or shutil.which("dpkg-deb") is None:
+        return None
+    for folder in ("state/lists/partial", "cache/archives/partial", "root"):
+        (place / folder).mkdir(parents=True, exist_ok=True)
+    (place / "status").touch()
+    debian = DEBIAN_OF[arch]
+    options = [
+        *(f"-oAPT::Architecture={debian}", f"-oAPT::Architectures={debian}", "-oAPT::Sandbox::User=root"),
+        *(f"-oDir::State={place / 'state'}", f"-oDir::State::status={place / 'status'}"),
+        f"-oDir::Cache={place / 'cache'}",
+    ]
+    try:
+        run(["apt-get", "-q", *options, "update"])
+        run(["env", "-C", place, "apt-get", "-q", *options, "download", "libinih-dev", "libncurses-dev"])
+        for package in sorted(place.glob("*.deb")):
+            run(["dpkg-deb", "-x", package, root])
+    except StageFailed:
+        say(
+            f"the wheel for {arch} has no argusd: apt has no libinih-dev and libncurses-dev for {debian} here"
+        )
+        return None
+    return root
+
+
 def make_wheel(arch: str, run: Run) -> None:
     """Build the wheel for ARCH, and tag it with the oldest system that it runs on."""
     raw = WORK / f"wheel-{arch}"
@@ -68,11 +102,14 @@ def make_wheel(arch: str, run: Run) -> None:
         "--no-build-isolation",
         "--config-settings=cmake.define.ARGUS_STATIC=ON",
     ]
-    if arch == HERE:  # where inih and curses are; elsewhere argusd comes along if they are there for it, too
+    libraries = None if arch == HERE else foreign_libraries(arch, run)
+    if arch == HERE or libraries is not None:
         command += [
             "--config-settings=cmake.define.ARGUS_ARGUSD=ON",
             "--config-settings=cmake.define.ARGUS_TUI=ON",
         ]
+    if libraries is not None:
+        command.append(f"--config-settings=cmake.define.CMAKE_FIND_ROOT_PATH={libraries}")
     if arch != HERE:
         cross = [f"_PYTHON_HOST_PLATFORM=linux-{arch}", f"CMAKE_TOOLCHAIN_FILE={toolchain(arch)}"]
         command = ["env", *cross, *command]
