@@ -20,6 +20,7 @@ typedef struct {
     uint8_t agree;
     uint8_t differ;
     uint8_t quiet;
+    bool heard;           // one that differs heard something
     bool excused;         // one of them heard the same a little aside
     argus_mask_t against; // those that differ
 } tally_t;
@@ -79,8 +80,9 @@ bool argus_crosscheck_is_witness(const argus_evidence_t *const self, const argus
            (own < suspicious || own < self->of[of].score[ARGUS_TEST_PEERS]);
 }
 
-static void add(tally_t *const tally, const verdict_t said, const int from) {
+static void add(tally_t *const tally, const verdict_t said, const int from, const bool heard) {
     const bool differs = said == CONTRADICTED;
+    tally->heard = tally->heard || (differs && heard);
     tally->agree = (uint8_t)(tally->agree + (said == AGREED));
     tally->quiet = (uint8_t)(tally->quiet + (said == QUIET));
     tally->differ = (uint8_t)(tally->differ + differs);
@@ -110,7 +112,7 @@ static int ask(const argus_evidence_t *const self, tally_t *const tally, const a
         const verdict_t said = compare(at->reading_mm, then->reading_mm, shift.along_mm);
         if (latest == 0 && argus_ping_turned_cdeg(at, then) <= ARGUS_SAME_CDEG) {
             latest = back;
-            add(tally, said, from);
+            add(tally, said, from, argus_ping_is_echo(then));
         }
         const bool lately = argus_ping_age_ms(then, now_ms) <= ARGUS_BESIDE_MS;
         tally->excused = tally->excused || (lately && (said == AGREED || said == QUIET));
@@ -159,11 +161,27 @@ static bool is_news(const argus_pings_t *const pings, const argus_ping_t *const 
     return true;
 }
 
+// Where one was silent and another heard something: how often this happens to the healthy, as some sonars are
+// deafer than others, permille. An echo that several miss is missed as often as the best of them misses one.
+static int32_t deafness_of(const argus_evidence_t *const self, const int sonar, const argus_ping_t *const at,
+                           const tally_t *const tally) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    if (!argus_ping_is_echo(at)) {
+        return argus_odds_deaf_permille(self, sonar);
+    }
+    int32_t least = tally->heard || tally->against == 0 ? 0 : 1000;
+    for (int i = 0; i < ARGUS_SONARS && least > 0; i++) {
+        least = (tally->against >> i & 1u) != 0 ? argus_min(least, argus_odds_deaf_permille(self, i)) : least;
+    }
+    return least;
+}
+
 // What moves about the robot makes healthy sonars disagree.
 static int32_t worth_of(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
-                        const int sonar, const bool odd) {
+                        const int sonar, const bool odd, const int32_t deaf_permille) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    const int32_t adds = argus_odds_of(self, knowledge, sonar, ARGUS_TEST_PEERS, odd);
+    const int32_t adds =
+        argus_odds_where(self, knowledge, sonar, ARGUS_TEST_PEERS, odd, odd ? deaf_permille : 0);
     const bool unrest = argus_clutter_beside(self, knowledge, -1, ARGUS_UNREST_MS);
     return odd && unrest ? adds * ARGUS_UNREST_PERCENT / 100 : adds;
 }
@@ -216,13 +234,15 @@ static bool is_since(const argus_knowledge_t *const knowledge, const int sonar,
 }
 
 static void count(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
-                  const argus_ping_t *const at, const argus_mask_t against) {
+                  const argus_ping_t *const at, const argus_mask_t against, const int32_t worth) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_case_t *const c = &self->of[sonar];
-    const int32_t worth = worth_of(self, knowledge, sonar, against != 0);
     argus_score(self, sonar, ARGUS_TEST_PEERS, worth);
     note_dispute(self, knowledge, sonar, at, against, worth);
     argus_odds_note(self, sonar, ARGUS_TEST_PEERS, against != 0);
+    if (against == 0 || !argus_ping_is_echo(at)) {
+        argus_odds_note_deaf(self, sonar, against != 0);
+    }
     if (against != 0) {
         note_contradicted(self, knowledge, sonar, at, against);
     } else if (argus_ping_is_echo(at) && is_since(knowledge, sonar, at)) {
@@ -271,9 +291,9 @@ static bool may_ask(argus_evidence_t *const self) {
 
 // Every reading tells of a lag, a contradicted one no more than it tells at all.
 static void weigh_lags(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
-                       const int sonar, const int back, const verdict_t verdict) {
+                       const int sonar, const int back, const verdict_t verdict, const int32_t worth) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS && verdict < TELLING);
-    const int32_t most = verdict == CONTRADICTED ? worth_of(self, knowledge, sonar, true) : ARGUS_CEILING;
+    const int32_t most = verdict == CONTRADICTED ? worth : ARGUS_CEILING;
     for (int i = 0; i < ARGUS_LAGS; i++) {
         const bool asks = verdict == CONTRADICTED || self->of[sonar].hypothesis[i].over_healthy > 0;
         if (asks && may_ask(self)) {
@@ -335,11 +355,10 @@ static void count_own(argus_evidence_t *const self, const argus_knowledge_t *con
 // The axis first: which sonar is a witness depends on what is counted.
 static void count_news(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                        const int sonar, argus_ping_t *const at, const verdict_t verdict,
-                       const argus_mask_t against) {
+                       const argus_mask_t against, const int32_t worth) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    const int32_t increment = worth_of(self, knowledge, sonar, verdict == CONTRADICTED);
-    weigh_offsets(self, knowledge, sonar, at, verdict, increment);
-    count(self, knowledge, sonar, at, verdict == CONTRADICTED ? against : 0);
+    weigh_offsets(self, knowledge, sonar, at, verdict, worth);
+    count(self, knowledge, sonar, at, verdict == CONTRADICTED ? against : 0, worth);
     at->counted = 1;
 }
 
@@ -352,15 +371,19 @@ static void weigh(argus_evidence_t *const self, const argus_knowledge_t *const k
     const verdict_t verdict = verdict_of(tally);
     at->weighed = verdict != UNSEEN;
     count_own(self, knowledge, sonar, back, verdict);
-    if ((verdict == AGREED || verdict == CONTRADICTED) && is_news(&self->pings[sonar], at)) {
-        count_news(self, knowledge, sonar, at, verdict, tally->against);
+    const bool tells = verdict == AGREED || verdict == CONTRADICTED;
+    const int32_t worth =
+        tells ? worth_of(self, knowledge, sonar, verdict == CONTRADICTED, deafness_of(self, sonar, at, tally))
+              : 0;
+    if (tells && is_news(&self->pings[sonar], at)) {
+        count_news(self, knowledge, sonar, at, verdict, tally->against, worth);
     }
     if (fresh && verdict == AGREED &&
         argus_ping_is_echo(at)) { // also where a silence of it has counted already
         c->borne_out = c->borne_out || c->score[ARGUS_TEST_PEERS] > 0;
     }
     if (verdict != DIVIDED) {
-        weigh_lags(self, knowledge, sonar, back, verdict);
+        weigh_lags(self, knowledge, sonar, back, verdict, worth);
     }
 }
 

@@ -26,6 +26,8 @@ void argus_evidence_set_caution(argus_evidence_t *const self, const int32_t perc
 void argus_evidence_forget(argus_evidence_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     memset(&self->of[sonar], 0, sizeof self->of[sonar]);
+    self->deaf[sonar] = (argus_rate_t){.all = 0};
+    self->deaf_waits[sonar] = 0;
     memset(&self->pings[sonar], 0, sizeof self->pings[sonar]);
     for (int i = 0; i < ARGUS_SONARS; i++) {
         self->of[i].against &= (argus_mask_t) ~(1u << sonar);

@@ -86,7 +86,10 @@ typedef struct {
     argus_mask_t dark;     // of arrays that hear nothing at all,
     argus_mask_t mute;     // ... which is in dispute: their silence speaks neither for nor against anyone
     argus_dispute_t dispute[ARGUS_ARRAYS_MAX];
-    argus_mask_t off_scale; // ranges do not change as the way does: no witnesses
+    argus_rate_t deaf[ARGUS_SONARS];  // where another heard something: all, and those at which it was silent
+    argus_rate_t deaf_ring;           // ... of all sonars together
+    uint8_t deaf_waits[ARGUS_SONARS]; // its silences since an echo of it was borne out last: it may be dead
+    argus_mask_t off_scale;           // ranges do not change as the way does: no witnesses
     argus_pings_t pings[ARGUS_SONARS];
 } argus_evidence_t;
 

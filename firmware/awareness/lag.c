@@ -24,19 +24,25 @@ static int32_t known_again_mm(const argus_pings_t *const pings, const int32_t re
     return reading_mm > ARGUS_CLIPPED_MM ? most - least : 0;
 }
 
+// Where the robot stands still a healthy one reads the same again, too.
+static bool is_repeat(const argus_ping_t *const now, const argus_ping_t *const then) {
+    return then != NULL && argus_ping_is_echo(now) && then->reading_mm == now->reading_mm &&
+           (argus_ping_moved_mm(now, then) >= ARGUS_STILL_MM ||
+            argus_ping_turned_cdeg(now, then) >= ARGUS_STILL_CDEG);
+}
+
 // When the lag begins it repeats as many readings as it is late. A repeat by chance is as likely as in the
 // test of one value, and the less likely the more the readings vary.
 static int32_t replay_of(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
-                         const int sonar, const uint16_t reading_mm, const int index) {
+                         const int sonar, const argus_ping_t *const now, const int index) {
     const int lag = index + ARGUS_LEAST_LAG;
     uint8_t *const run = &self->of[sonar].lag_run[index];
     const argus_pings_t *const pings = &self->pings[sonar];
-    const argus_ping_t *const then = argus_pings_before(pings, 1, lag - 1);
-    if (then == NULL || reading_mm >= ARGUS_NO_ECHO_MM || then->reading_mm != reading_mm) {
+    if (!is_repeat(now, argus_pings_before(pings, 1, lag - 1))) {
         *run = 0;
         return 0;
     }
-    const int32_t varies_mm = *run < lag ? known_again_mm(pings, reading_mm, lag) : 0;
+    const int32_t varies_mm = *run < lag ? known_again_mm(pings, now->reading_mm, lag) : 0;
     if (varies_mm == 0) {
         return 0;
     }
@@ -49,10 +55,10 @@ static int32_t replay_of(argus_evidence_t *const self, const argus_knowledge_t *
 }
 
 void argus_lag_take(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
-                    const uint16_t reading_mm) {
+                    const argus_ping_t *const now) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     for (int i = 0; i < ARGUS_LAGS; i++) {
-        const int32_t gain = replay_of(self, knowledge, sonar, reading_mm, i);
+        const int32_t gain = replay_of(self, knowledge, sonar, now, i);
         argus_hypothesis_add(self, sonar, i, gain, gain);
     }
 }

@@ -7,6 +7,6 @@
 
 // One more reading, not in the log yet, adds to the hypothesis of each lag.
 void argus_lag_take(argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar,
-                    uint16_t reading_mm);
+                    const argus_ping_t *now);
 
 #endif

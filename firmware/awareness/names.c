@@ -59,6 +59,14 @@ static argus_fault_kind_t kind_of_peers(const argus_case_t *const self) {
     return late_of(self).over_other >= ARGUS_LATE_LEAD ? ARGUS_KIND_SLOW : ARGUS_KIND_WRONG;
 }
 
+// It is contradicted for silence, too, and others bear its echoes out: it is deaf to some surfaces, as
+// healthy ones are, one more than another. Then gaps between echoes of one thing tell, or a long silence.
+static bool is_deaf(const argus_case_t *const self) {
+    return self->borne_out && argus_crosscheck_silences(self, ARGUS_SILENT_OF) > 0 &&
+           self->score[ARGUS_TEST_DROPOUT] == 0 &&
+           !(self->none_run >= ARGUS_OFF_RUN_LONG && self->silent_bits == UINT8_MAX);
+}
+
 // It has heard nothing for a while, and wherever it lately did not, the others heard something. So less is
 // wanted than where echoes are contradicted, which might be of another thing.
 static bool is_silent(const argus_case_t *const self) {
@@ -68,28 +76,37 @@ static bool is_silent(const argus_case_t *const self) {
 }
 
 // The more definite tests come first.
+static argus_fault_kind_t own_found(const argus_case_t *const self) {
+    if (self->score[ARGUS_TEST_STUCK] >= argus_bounds[ARGUS_TEST_STUCK].naming) {
+        return ARGUS_KIND_STUCK;
+    }
+    if (self->score[ARGUS_TEST_GARBAGE] >= argus_bounds[ARGUS_TEST_GARBAGE].naming) {
+        return ARGUS_KIND_GARBAGE;
+    }
+    if (is_late(self, ARGUS_LATE_NAMING)) {
+        return ARGUS_KIND_SLOW;
+    }
+    return self->score[ARGUS_TEST_DROPOUT] >= argus_bounds[ARGUS_TEST_DROPOUT].naming
+               ? ARGUS_KIND_INTERMITTENT
+               : ARGUS_KIND_NONE;
+}
+
+static argus_fault_kind_t peers_found(const argus_case_t *const self) {
+    if (self->score[ARGUS_TEST_PEERS] >= argus_bounds[ARGUS_TEST_PEERS].naming && has_partners(self) &&
+        !is_deaf(self)) {
+        return kind_of_peers(self);
+    }
+    if (is_silent(self)) {
+        return ARGUS_KIND_OFF;
+    }
+    return is_offset(self, ARGUS_OFFSET_NAMING) ? ARGUS_KIND_WRONG : ARGUS_KIND_NONE;
+}
+
 argus_fault_kind_t argus_names_found(const argus_evidence_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_case_t *const c = &self->of[sonar];
-    if (c->score[ARGUS_TEST_STUCK] >= argus_bounds[ARGUS_TEST_STUCK].naming) {
-        return ARGUS_KIND_STUCK;
-    }
-    if (c->score[ARGUS_TEST_GARBAGE] >= argus_bounds[ARGUS_TEST_GARBAGE].naming) {
-        return ARGUS_KIND_GARBAGE;
-    }
-    if (is_late(c, ARGUS_LATE_NAMING)) {
-        return ARGUS_KIND_SLOW;
-    }
-    if (c->score[ARGUS_TEST_DROPOUT] >= argus_bounds[ARGUS_TEST_DROPOUT].naming) {
-        return ARGUS_KIND_INTERMITTENT;
-    }
-    if (c->score[ARGUS_TEST_PEERS] >= argus_bounds[ARGUS_TEST_PEERS].naming && has_partners(c)) {
-        return kind_of_peers(c);
-    }
-    if (is_silent(c)) {
-        return ARGUS_KIND_OFF;
-    }
-    return is_offset(c, ARGUS_OFFSET_NAMING) ? ARGUS_KIND_WRONG : ARGUS_KIND_NONE;
+    const argus_fault_kind_t own = own_found(c);
+    return own != ARGUS_KIND_NONE ? own : peers_found(c);
 }
 
 static bool is_convicted_by(const argus_case_t *const self, const argus_test_t test) {
@@ -129,7 +146,7 @@ bool argus_names_suspects(const argus_evidence_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_case_t *const c = &self->of[sonar];
     for (int i = 0; i < ARGUS_TESTS; i++) {
-        if (c->score[i] >= suspicious(argus_bounds[i].naming)) {
+        if (c->score[i] >= suspicious(argus_bounds[i].naming) && (i != ARGUS_TEST_PEERS || !is_deaf(c))) {
             return true;
         }
     }

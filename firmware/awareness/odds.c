@@ -68,9 +68,15 @@ int32_t argus_odds_common_permille(const argus_evidence_t *const self,
 
 int32_t argus_odds_of(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                       const int sonar, const argus_test_t test, const bool odd) {
+    return argus_odds_where(self, knowledge, sonar, test, odd, 0);
+}
+
+int32_t argus_odds_where(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                         const int sonar, const argus_test_t test, const bool odd,
+                         const int32_t least_permille) {
     const odds_t *const o = &odds[test];
     const int32_t share = argus_odds_permille(self, knowledge, sonar, test);
-    const int32_t healthy = argus_between(o->usual, o->odd * 3 / 4, share);
+    const int32_t healthy = argus_between(o->usual, o->odd * 3 / 4, argus_max(share, least_permille));
     if (odd) {
         return argus_ln(o->odd) - argus_ln(healthy);
     }
@@ -83,6 +89,34 @@ void argus_odds_note(argus_evidence_t *const self, const int sonar, const argus_
     rate->odd = (uint16_t)(rate->odd + (odd ? ARGUS_RATE_ONE : 0));
 }
 
+static void note_deaf(argus_rate_t *const rate, const int silent) {
+    rate->all = (uint16_t)argus_min(UINT16_MAX, rate->all + (silent + 1) * ARGUS_RATE_ONE);
+    rate->odd = (uint16_t)argus_min(UINT16_MAX, rate->odd + silent * ARGUS_RATE_ONE);
+}
+
+void argus_odds_note_deaf(argus_evidence_t *const self, const int sonar, const bool silent) {
+    if (silent) {
+        self->deaf_waits[sonar] = argus_one_more(self->deaf_waits[sonar]);
+        return;
+    }
+    note_deaf(&self->deaf[sonar], self->deaf_waits[sonar]);
+    note_deaf(&self->deaf_ring, self->deaf_waits[sonar]);
+    self->deaf_waits[sonar] = 0;
+}
+
+int32_t argus_odds_deaf_permille(const argus_evidence_t *const self, const int sonar) {
+    const int32_t earlier = ARGUS_DEAF_EARLIER * ARGUS_RATE_ONE;
+    const argus_rate_t *const ring = &self->deaf_ring;
+    const argus_rate_t *const own = &self->deaf[sonar];
+    const int32_t usual = (ring->odd + ARGUS_RATE_ONE) * 1000 / (ring->all + earlier);
+    return (own->odd * 1000 + usual * earlier) / (own->all + earlier);
+}
+
+static void fade_deaf(argus_rate_t *const rate) {
+    rate->all = (uint16_t)(rate->all - rate->all / ARGUS_DEAF_FADES_S);
+    rate->odd = (uint16_t)(rate->odd - rate->odd / ARGUS_DEAF_FADES_S);
+}
+
 void argus_odds_fade(argus_evidence_t *const self) {
     for (int i = 0; i < ARGUS_SONARS; i++) {
         for (int test = 0; test < ARGUS_TESTS; test++) {
@@ -90,5 +124,7 @@ void argus_odds_fade(argus_evidence_t *const self) {
             rate->all = (uint16_t)(rate->all * ARGUS_RATE_KEEPS_EIGHTHS / 8);
             rate->odd = (uint16_t)(rate->odd * ARGUS_RATE_KEEPS_EIGHTHS / 8);
         }
+        fade_deaf(&self->deaf[i]);
     }
+    fade_deaf(&self->deaf_ring);
 }

@@ -13,6 +13,16 @@ int32_t argus_ln(int32_t number);
 int32_t argus_odds_of(const argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar,
                       argus_test_t test, bool odd);
 
+// Likewise where a healthy one is known to be odd as often as this at the least, permille.
+int32_t argus_odds_where(const argus_evidence_t *self, const argus_knowledge_t *knowledge, int sonar,
+                         argus_test_t test, bool odd, int32_t least_permille);
+
+// Sonars differ in what they hear: how often one was silent where another heard something, permille, over
+// minutes. Its silences count once an echo of it is borne out: it is not dead, then. One of which little is
+// known is taken for one as all are.
+void argus_odds_note_deaf(argus_evidence_t *self, int sonar, bool silent);
+int32_t argus_odds_deaf_permille(const argus_evidence_t *self, int sonar);
+
 // Takes it into the rates.
 void argus_odds_note(argus_evidence_t *self, int sonar, argus_test_t test, bool odd);
 

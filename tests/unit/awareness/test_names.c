@@ -121,9 +121,10 @@ void test_silence_alone_is_off_or_gaps(void) {
     TEST_ASSERT_EQUAL(ARGUS_KIND_WRONG, named());
 }
 
-// One that is deaf to some surfaces, and whose echoes others bear out, is named and not given up.
-void test_one_that_hears_some_is_not_given_up_for_silence(void) {
-    for (unsigned bits = 0; bits < 8; bits++) {
+// One that is deaf to some surfaces, and whose echoes others bear out, is neither named nor given up for
+// silence; gaps between echoes of one thing name it, or a silence of many contradicted readings in a row.
+void test_one_that_hears_some_is_not_named_for_silence(void) {
+    for (unsigned bits = 0; bits <= UINT8_MAX; bits++) {
         for (int heard = 0; heard < 2; heard++) {
             setUp();
             give_ground();
@@ -131,8 +132,13 @@ void test_one_that_hears_some_is_not_given_up_for_silence(void) {
             c->silent_bits = (uint8_t)bits;
             c->none_run = 30;
             c->borne_out = heard != 0;
-            TEST_ASSERT_NOT_EQUAL(ARGUS_KIND_NONE, named());
-            TEST_ASSERT_EQUAL(heard == 0 || bits == 0, convicted() != ARGUS_KIND_NONE);
+            const bool deaf = heard != 0 && (bits & 7u) != 0;
+            snprintf(text, sizeof text, "bits %02x, heard %d", bits, heard);
+            TEST_ASSERT_EQUAL_MESSAGE(!deaf || bits == UINT8_MAX, named() != ARGUS_KIND_NONE, text);
+            TEST_ASSERT_EQUAL_MESSAGE(!deaf || bits == UINT8_MAX, argus_evidence_suspects(&e, SONAR), text);
+            TEST_ASSERT_EQUAL_MESSAGE(!deaf, convicted() != ARGUS_KIND_NONE, text);
+            c->score[ARGUS_TEST_DROPOUT] = 300;
+            TEST_ASSERT_NOT_EQUAL_MESSAGE(ARGUS_KIND_NONE, named(), text);
         }
     }
 }

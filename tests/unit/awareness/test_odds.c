@@ -91,3 +91,43 @@ void test_what_was_odd_is_forgotten(void) {
     }
     TEST_ASSERT_INT_WITHIN(usual / 10, usual, worth(ARGUS_TEST_PEERS, true));
 }
+
+// The oftener a sonar was silent where others heard something, and heard again, the less its silence says;
+// one of which little is known is as all are; and one that is not heard again stays as it was: it may be
+// dead.
+void test_the_deafer_a_sonar_the_less_its_silence_says(void) {
+    int before = argus_odds_deaf_permille(&e, ME);
+    for (int silent = 1; silent <= 4; silent++) {
+        setUp();
+        for (int i = 0; i < 50 * (silent + 1); i++) {
+            argus_odds_note_deaf(&e, ME, i % (silent + 1) != silent);
+        }
+        const int deaf = argus_odds_deaf_permille(&e, ME);
+        TEST_ASSERT_TRUE(deaf > before);
+        TEST_ASSERT_INT_WITHIN(50, 1000 * silent / (silent + 1), deaf);
+        TEST_ASSERT_TRUE(argus_odds_deaf_permille(&e, 5) > 90);
+        TEST_ASSERT_TRUE(argus_odds_where(&e, &k, ME, ARGUS_TEST_PEERS, true, deaf) <=
+                         argus_odds_where(&e, &k, ME, ARGUS_TEST_PEERS, true, before));
+        before = deaf;
+    }
+    TEST_ASSERT_TRUE(argus_odds_where(&e, &k, ME, ARGUS_TEST_PEERS, true, before) <
+                     worth(ARGUS_TEST_PEERS, true) / 2);
+    for (int i = 0; i < 100; i++) {
+        argus_odds_note_deaf(&e, ME, true);
+    }
+    TEST_ASSERT_EQUAL(before, argus_odds_deaf_permille(&e, ME));
+}
+
+// What is known of it fades, and an hour of silences cannot overflow it.
+void test_deafness_fades_and_does_not_overflow(void) {
+    for (int i = 0; i < 20000; i++) {
+        argus_odds_note_deaf(&e, ME, i % 9 != 8);
+    }
+    const int deaf = argus_odds_deaf_permille(&e, ME);
+    TEST_ASSERT_TRUE(deaf >= 0 && deaf <= 1000);
+    for (int s = 0; s < 3600; s++) {
+        argus_odds_fade(&e);
+    }
+    TEST_ASSERT_TRUE(argus_odds_deaf_permille(&e, ME) <= deaf);
+    TEST_ASSERT_TRUE(e.deaf[ME].all < 120 * ARGUS_RATE_ONE);
+}
