@@ -169,7 +169,7 @@ static int32_t deafness_of(const argus_evidence_t *const self, const int sonar, 
     if (!argus_ping_is_echo(at)) {
         return argus_odds_deaf_permille(self, sonar);
     }
-    int32_t least = tally->heard || tally->against == 0 ? 0 : 1000;
+    int32_t least = tally->heard ? 0 : 1000;
     for (int i = 0; i < ARGUS_SONARS && least > 0; i++) {
         least = (tally->against >> i & 1u) != 0 ? argus_min(least, argus_odds_deaf_permille(self, i)) : least;
     }
@@ -180,8 +180,7 @@ static int32_t deafness_of(const argus_evidence_t *const self, const int sonar, 
 static int32_t worth_of(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                         const int sonar, const bool odd, const int32_t deaf_permille) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    const int32_t adds =
-        argus_odds_where(self, knowledge, sonar, ARGUS_TEST_PEERS, odd, odd ? deaf_permille : 0);
+    const int32_t adds = argus_odds_where(self, knowledge, sonar, ARGUS_TEST_PEERS, odd, deaf_permille);
     const bool unrest = argus_clutter_beside(self, knowledge, -1, ARGUS_UNREST_MS);
     return odd && unrest ? adds * ARGUS_UNREST_PERCENT / 100 : adds;
 }
@@ -362,6 +361,16 @@ static void count_news(argus_evidence_t *const self, const argus_knowledge_t *co
     at->counted = 1;
 }
 
+static int32_t worth_as(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                        const int sonar, const argus_ping_t *const at, const tally_t *const tally,
+                        const verdict_t verdict) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    if (verdict == CONTRADICTED) {
+        return worth_of(self, knowledge, sonar, true, deafness_of(self, sonar, at, tally));
+    }
+    return verdict == AGREED ? worth_of(self, knowledge, sonar, false, 0) : 0;
+}
+
 static void weigh(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
                   const int back, const tally_t *const tally, const bool fresh) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
@@ -372,9 +381,7 @@ static void weigh(argus_evidence_t *const self, const argus_knowledge_t *const k
     at->weighed = verdict != UNSEEN;
     count_own(self, knowledge, sonar, back, verdict);
     const bool tells = verdict == AGREED || verdict == CONTRADICTED;
-    const int32_t worth =
-        tells ? worth_of(self, knowledge, sonar, verdict == CONTRADICTED, deafness_of(self, sonar, at, tally))
-              : 0;
+    const int32_t worth = worth_as(self, knowledge, sonar, at, tally, verdict);
     if (tells && is_news(&self->pings[sonar], at)) {
         count_news(self, knowledge, sonar, at, verdict, tally->against, worth);
     }
