@@ -11,6 +11,8 @@
 #define START_MS 400 // a motion may take this long to show in the SIPs
 #define RETRY_SIPS 5 // at rest off the target for so many SIPs: command it again
 #define TRIES_MAX 3
+#define SAME_MM 20   // a MOVE that ends so near the one at work ends there, too
+#define RENEW_MS 600 // one that goes farther is sent so long before the robot would brake
 
 void argus_motion_init(argus_motion_t *const self) {
     memset(self, 0, sizeof *self);
@@ -48,17 +50,46 @@ void argus_motion_steer(argus_outbox_t *const out, const argus_knowledge_t *cons
     argus_outbox_int(out, ARCOS_CMD_HEAD, robot_degrees(knowledge, heading_cdeg));
 }
 
+static int32_t left_mm(const argus_motion_t *const self, const argus_knowledge_t *const knowledge) {
+    return (int32_t)(self->end_mm - knowledge->odometer_mm);
+}
+
+// The MOVE at work ends there, or goes far enough for now. A MOVE counts from where the robot is when it
+// comes, so one that is sent again and comes late ends farther on.
+static bool leads_there(const argus_motion_t *const self, const argus_knowledge_t *const knowledge,
+                        const int32_t distance_mm) {
+    const int32_t has_mm = left_mm(self, knowledge);
+    const int32_t beyond_mm = has_mm - distance_mm;
+    const int32_t brakes_mm = self->speed_mm_s * self->speed_mm_s / (2 * knowledge->robot->decel_mm_s2);
+    const bool goes_on = has_mm > brakes_mm + self->speed_mm_s * RENEW_MS / 1000;
+    const bool rolls = self->kind == ARGUS_MOTION_MOVE && !self->settled && knowledge->still_sips == 0;
+    return rolls && has_mm > 0 && beyond_mm < SAME_MM && (beyond_mm > -SAME_MM || goes_on);
+}
+
+static void send_move(argus_motion_t *const self, argus_outbox_t *const out,
+                      const argus_knowledge_t *const knowledge, const int32_t distance_mm) {
+    const int32_t built_mm = knowledge->robot->reversed ? -distance_mm : distance_mm;
+    if (argus_outbox_int(out, ARCOS_CMD_MOVE, built_mm)) {
+        self->target_mm = distance_mm;
+        self->end_mm = knowledge->odometer_mm + (uint32_t)argus_max(distance_mm, 0);
+    }
+}
+
 void argus_motion_move(argus_motion_t *const self, argus_outbox_t *const out,
                        const argus_knowledge_t *const knowledge, const int32_t distance_mm,
                        const int32_t speed_mm_s, const uint32_t now_ms) {
     ARGUS_ASSERT(speed_mm_s > 0);
-    if (self->speed_mm_s != speed_mm_s) {
+    const bool is_other = self->speed_mm_s != speed_mm_s;
+    if (is_other) {
         argus_outbox_int(out, ARCOS_CMD_SETV, speed_mm_s);
         self->speed_mm_s = speed_mm_s;
     }
+    if (is_other || !leads_there(self, knowledge, distance_mm)) {
+        send_move(self, out, knowledge, distance_mm);
+    } else {
+        self->target_mm = left_mm(self, knowledge);
+    }
     begin(self, ARGUS_MOTION_MOVE, now_ms);
-    self->target_mm = distance_mm;
-    argus_outbox_int(out, ARCOS_CMD_MOVE, knowledge->robot->reversed ? -distance_mm : distance_mm);
 }
 
 void argus_motion_stop(argus_motion_t *const self, argus_outbox_t *const out, const uint32_t now_ms) {

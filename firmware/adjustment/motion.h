@@ -23,6 +23,7 @@ typedef struct {
     uint8_t tries;
     int32_t target_cdeg; // TURN: course frame, as commanded (whole degrees of the robot's own heading)
     int32_t target_mm;   // MOVE: signed, ahead is where the leading end is
+    uint32_t end_mm;     // ... where the one that was sent last ends, of the odometer
     uint32_t issued_ms;
     uint32_t late_ms;   // the link: a motion takes longer to show
     int32_t speed_mm_s; // last SETV, 0: the robot's own
@@ -32,7 +33,8 @@ typedef struct {
 void argus_motion_init(argus_motion_t *self);
 void argus_motion_turn(argus_motion_t *self, argus_outbox_t *out, const argus_knowledge_t *knowledge,
                        int32_t heading_cdeg, uint32_t now_ms);
-// SETV goes before the MOVE when the speed differs from the last one.
+// SETV goes before the MOVE when the speed differs from the last one. A MOVE that ends where the one at work
+// ends is not sent again.
 void argus_motion_move(argus_motion_t *self, argus_outbox_t *out, const argus_knowledge_t *knowledge,
                        int32_t distance_mm, int32_t speed_mm_s, uint32_t now_ms);
 // Sends STOP and waits for rest.

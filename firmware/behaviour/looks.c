@@ -23,8 +23,7 @@ static unsigned open_names(const argus_t *const self) {
 
 // Looks prove nothing of those that do not look ahead: after two they tell no more.
 argus_mask_t argus_to_settle(const argus_t *const self) {
-    const argus_guard_t guard = argus_guard(self);
-    if (!argus_guard_may_turn(&guard) || self->looks.settling >= ARGUS_LOOKS_SETTLE_MOST) {
+    if (self->looks.settling >= ARGUS_LOOKS_SETTLE_MOST) {
         return 0;
     }
     const unsigned proves = self->looks.settling < ARGUS_LOOKS_PROOFS_AT_GOAL

@@ -19,8 +19,7 @@ bool argus_look_pays(const argus_t *self);
 // no look.
 argus_mask_t argus_to_try(const argus_t *self);
 
-// At the goal: what is named and open is settled there, where a look costs no way. 0: nothing, or no room to
-// turn.
+// At the goal: what is named and open is settled there, where a look costs no way. 0: nothing.
 argus_mask_t argus_to_settle(const argus_t *self);
 
 // The kind that the evidence gives it (NONE: none): `wrong` where a law of its readings was named and given

@@ -48,6 +48,22 @@ static int32_t left_mm(const argus_t *const self, const argus_travel_t *const mi
     return mine->jog_mm > 0 ? mine->jog_mm : argus_task_leg_mm(&mine->task, &self->knowledge);
 }
 
+// The goal stays, so S7 is asked once more after a round: a single echo may have said no.
+static void settle(const argus_t *const self, argus_intent_t *const intent) {
+    const argus_guard_t guard = argus_guard(self);
+    const argus_mask_t open = argus_rules(self)->evidence ? argus_to_settle(self) : 0;
+    const bool may_turn = argus_guard_may_turn(&guard);
+    intent->again = open != 0 && !may_turn && !self->turning.again;
+    if (intent->again) {
+        argus_to_check(intent, false);
+    } else if (open != 0 && may_turn) {
+        intent->act = ARGUS_DO_VERIFY;
+        intent->sonars = open;
+    } else {
+        intent->act = ARGUS_DO_REACH;
+    }
+}
+
 static void arrive(const argus_t *const self, argus_travel_t *const mine, argus_intent_t *const intent) {
     if (!mine->arriving) {
         mine->arriving = true;
@@ -63,9 +79,7 @@ static void arrive(const argus_t *const self, argus_travel_t *const mine, argus_
         argus_task_return(&mine->task);
         return;
     }
-    const argus_mask_t open = argus_rules(self)->evidence ? argus_to_settle(self) : 0;
-    intent->act = open != 0 ? ARGUS_DO_VERIFY : ARGUS_DO_REACH;
-    intent->sonars = open;
+    settle(self, intent);
 }
 
 // Waypoints and the goal. True: `intent` is what the SIP calls for.
@@ -303,7 +317,7 @@ static void steer(const argus_t *const self, const argus_guard_t *const guard, a
     }
 }
 
-// A MOVE is renewed on each SIP, and ends where it should when we say nothing more.
+// What is wanted is worked out on each SIP; the MOVE at work ends where it should when we say nothing more.
 static void move_on(const argus_t *const self, const argus_guard_t *const guard, argus_travel_t *const mine,
                     const int32_t free_mm, const int32_t seen_mm, argus_intent_t *const intent) {
     const int32_t way_mm = left_mm(self, mine);
@@ -482,7 +496,7 @@ void argus_run_stepping(const argus_t *const self, argus_travel_t *const mine, a
     }
 }
 
-// A short MOVE, renewed on each SIP; only a bumper tells of what is in the way.
+// A short MOVE, renewed before it ends; only a bumper tells of what is in the way.
 static void creep_on(const argus_t *const self, const argus_guard_t *const guard, argus_travel_t *const mine,
                      argus_intent_t *const intent) {
     const int32_t way_mm = left_mm(self, mine);

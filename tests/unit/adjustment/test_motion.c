@@ -140,6 +140,79 @@ void test_the_speed_goes_before_the_move_when_it_differs(void) {
     TEST_ASSERT_EQUAL(90, next(ARCOS_CMD_MOVE));
 }
 
+// Rolling at that speed, so far; returns what has gone out.
+static int renewed(int32_t distance_mm, int32_t speed_mm_s, int driven_mm) {
+    uint8_t packet[ARGUS_FRAME_TOTAL_MAX];
+    int moves = 0;
+    sip.x_raw = (uint16_t)(sip.x_raw + driven_mm);
+    sip.vel_left_mm_s = sip.vel_right_mm_s = (int16_t)speed_mm_s;
+    now_ms += 100;
+    argus_knowledge_sip(&k, &sip, 1000, now_ms);
+    argus_motion_sip(&m, &k, now_ms);
+    argus_motion_move(&m, &out, &k, distance_mm, speed_mm_s, now_ms);
+    while (argus_outbox_fetch(&out, packet, sizeof packet) > 0) {
+        moves += packet[3] == ARCOS_CMD_MOVE;
+    }
+    return moves;
+}
+
+// It counts from where the robot is when it comes, so that it ends farther on if it comes late.
+void test_a_move_that_ends_where_the_one_at_work_ends_is_not_sent_again(void) {
+    TEST_ASSERT_EQUAL(1, renewed(600, 200, 0));
+    for (int left_mm = 580; left_mm > 0; left_mm -= 20) {
+        TEST_ASSERT_EQUAL(0, renewed(left_mm + left_mm % 3 * 9, 200, 20));
+        TEST_ASSERT_EQUAL(left_mm, m.target_mm);
+        TEST_ASSERT_FALSE(m.settled);
+    }
+}
+
+void test_a_move_that_ends_before_the_one_at_work_is_sent_at_once(void) {
+    TEST_ASSERT_EQUAL(1, renewed(5000, 200, 0));
+    TEST_ASSERT_EQUAL(1, renewed(4959, 200, 20));
+    TEST_ASSERT_EQUAL(0, renewed(4939, 200, 20));
+    TEST_ASSERT_EQUAL(1, renewed(300, 200, 20));
+}
+
+void test_a_move_that_goes_farther_is_sent_before_the_robot_brakes(void) {
+    TEST_ASSERT_EQUAL(1, renewed(1000, 200, 0));
+    const int brakes_mm = 200 * 200 / (2 * k.robot->decel_mm_s2);
+    int left_mm = 1000;
+    while (renewed(1000, 200, 20) == 0) {
+        left_mm -= 20;
+        TEST_ASSERT_TRUE(left_mm > brakes_mm + 100);
+    }
+    TEST_ASSERT_TRUE(left_mm < brakes_mm + 200);
+    TEST_ASSERT_EQUAL(1000, m.target_mm);
+}
+
+void test_a_robot_at_rest_is_sent_its_move_again(void) {
+    TEST_ASSERT_EQUAL(1, renewed(500, 200, 0));
+    sip.vel_left_mm_s = sip.vel_right_mm_s = 0;
+    argus_knowledge_sip(&k, &sip, 1000, now_ms);
+    argus_motion_move(&m, &out, &k, 500, 200, now_ms);
+    TEST_ASSERT_EQUAL(500, next(ARCOS_CMD_MOVE));
+}
+
+void test_another_speed_sends_the_move_again(void) {
+    TEST_ASSERT_EQUAL(1, renewed(500, 200, 0));
+    TEST_ASSERT_EQUAL(1, renewed(480, 175, 20));
+}
+
+// A queue that is full takes none, and the next SIP sends it.
+void test_a_move_that_did_not_go_out_is_not_at_work(void) {
+    while (argus_outbox_int(&out, ARCOS_CMD_ADSEL, 0)) {
+    }
+    argus_motion_move(&m, &out, &k, 500, 0x7FFF, now_ms);
+    memset(&out, 0, sizeof out);
+    TEST_ASSERT_EQUAL(1, renewed(500, 0x7FFF, 0));
+}
+
+void test_a_move_after_a_stop_is_sent(void) {
+    TEST_ASSERT_EQUAL(1, renewed(500, 200, 0));
+    argus_motion_stop(&m, &out, now_ms);
+    TEST_ASSERT_EQUAL(1, renewed(480, 200, 20));
+}
+
 void test_a_stop_overtakes_and_drops_motions(void) {
     argus_motion_move(&m, &out, &k, 1000, 200, now_ms);
     argus_motion_stop(&m, &out, now_ms);

@@ -365,6 +365,38 @@ static int looks_at_the_goal(int sonar) {
     return robot_count_events(&robot, ARGUS_EV_SONAR_VERIFYING, 0);
 }
 
+// The looks at a goal where sonar 0 hears something within the swing circle as a turn is asked for: once, or
+// from then on.
+static int looks_beside(bool stays) {
+    bool asked = false;
+    start_in(-2500, -1500, 3000, 1500);
+    TEST_ASSERT_TRUE(robot_goal(&robot, 1200, 0));
+    for (int i = 0; i < 600 && robot.argus.mission == ARGUS_MISSION_RUNNING; i++) {
+        const bool there = robot.argus.travel.arriving;
+        hold(1u << 3, 60);
+        asked = asked || (there && robot.argus.mode == ARGUS_MODE_CHECKING);
+        robot.fault[0] = stays && (there || asked) ? ROBOT_VALUE : ROBOT_OK;
+        robot.fault_value[0] = 100;
+        robot_next_sip(&robot);
+        asked = asked || (there && robot.argus.mode == ARGUS_MODE_CHECKING);
+        if (robot.argus.travel.arriving && !asked) {
+            robot.argus.knowledge.sonar[0].reading_mm = 100;
+        }
+    }
+    TEST_ASSERT_TRUE(asked);
+    TEST_ASSERT_EQUAL_MESSAGE(ARGUS_MISSION_REACHED, robot.argus.mission, "it waits no longer than that");
+    finish();
+    return robot_count_events(&robot, ARGUS_EV_SONAR_VERIFYING, 0);
+}
+
+void test_at_the_goal_a_single_echo_does_not_cost_the_looks(void) {
+    TEST_ASSERT_TRUE(looks_beside(false) > 2);
+}
+
+void test_at_a_goal_without_room_to_turn_the_looks_are_done_without(void) {
+    TEST_ASSERT_TRUE(looks_beside(true) < 2);
+}
+
 // Looks prove nothing of one behind, so a third one is for nothing.
 void test_what_looks_cannot_prove_is_looked_at_twice(void) {
     TEST_ASSERT_EQUAL(2, looks_at_the_goal(12));

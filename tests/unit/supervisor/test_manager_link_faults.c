@@ -178,7 +178,7 @@ static robot_harm_t harm_of(robot_way_t way, uint32_t at, robot_harm_kind_t kind
         harm.with = chance % 256;
         break;
     case ROBOT_DELAY:
-        harm.with = 20 + chance % 1500;
+        harm.with = 100 + chance % 4901;
         break;
     case ROBOT_LATENCY:
         harm.with = 50 + chance % 1951;
@@ -204,7 +204,7 @@ static void run_course(course_t course, uint32_t runs, uint32_t seed, tally_t *t
         for (uint32_t n = 0; n < runs; n++) {
             const uint32_t at = (first + (uint32_t)((uint64_t)n * bytes / runs)) % bytes;
             const robot_harm_t harm =
-                harm_of((robot_way_t)way, at, (robot_harm_kind_t)(n % ROBOT_LATENCY), seed + n);
+                harm_of((robot_way_t)way, at, (robot_harm_kind_t)(n % ROBOT_HARMS), seed + n);
             run_one(course, &harm, tally);
         }
     }
