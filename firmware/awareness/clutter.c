@@ -16,8 +16,8 @@ bool argus_clutter_beside(const argus_evidence_t *const self, const argus_knowle
                           const int but, const uint32_t ms) {
     ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     for (int i = 0; i < knowledge->sonars; i++) {
-        const argus_case_t *const c = &self->of[i];
-        if (i != but && c->moved && knowledge->sip_ms - c->moved_ms < ms && !argus_is_out(knowledge, i)) {
+        const bool counts = i != but && self->of[i].moved && !argus_is_out(knowledge, i);
+        if (counts && knowledge->sip_ms - self->of[i].moved_ms < ms) {
             return true;
         }
     }

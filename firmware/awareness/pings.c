@@ -22,7 +22,6 @@ static unsigned slot_of(const argus_pings_t *const self, const int back) {
 }
 
 const argus_ping_t *argus_pings_at(const argus_pings_t *const self, const int back) {
-    ARGUS_ASSERT(self->count <= ARGUS_PINGS && self->next < ARGUS_PINGS);
     return back >= 1 && back <= self->count ? &self->ping[slot_of(self, back)] : NULL;
 }
 
@@ -36,7 +35,7 @@ const argus_ping_t *argus_pings_before(const argus_pings_t *const self, const in
     ARGUS_ASSERT(self->count <= ARGUS_PINGS && self->next < ARGUS_PINGS);
     int left = firings;
     for (int i = back; i <= self->count; i++) {
-        const argus_ping_t *const at = argus_pings_at(self, i);
+        const argus_ping_t *const at = &self->ping[slot_of(self, i)];
         if (left <= at->repeats) {
             return at;
         }

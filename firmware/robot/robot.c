@@ -4,8 +4,6 @@
 
 #include <stddef.h>
 
-#define SUBCLASS_MAX 32
-
 _Static_assert(ARGUS_ROBOT_LAST == ARGUS_ROBOTS,
                "the setting robot has a value for each row, and by-subclass");
 
@@ -30,16 +28,13 @@ static char lower(const char letter) {
     return letter >= 'A' && letter <= 'Z' ? (char)(letter + ('a' - 'A')) : letter;
 }
 
+// No further than the end of `name`: there, at the latest, the two differ or both end.
 static bool is_name(const char *const said, const char *const name) {
-    for (size_t i = 0; i < SUBCLASS_MAX; i++) {
-        if (lower(said[i]) != name[i]) {
-            return false;
-        }
-        if (name[i] == '\0') {
-            return true;
-        }
+    size_t i = 0;
+    while (name[i] != '\0' && lower(said[i]) == name[i]) {
+        i++;
     }
-    return false;
+    return name[i] == '\0' && said[i] == '\0';
 }
 
 const argus_robot_t *argus_robot_find(const char *const subclass) {

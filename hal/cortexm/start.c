@@ -19,10 +19,12 @@ void cortexm_start(void);
 __attribute__((used)) void cortexm_start(void) {
     const uint32_t *from = cortexm_data_from;
     cortexm_board_start();
+    // cppcheck-suppress comparePointers ; both ends of one section, from the linker
     for (uint32_t *to = cortexm_data; to < cortexm_data_end; to++) {
         *to = *from++;
         STEP;
     }
+    // cppcheck-suppress comparePointers ; likewise
     for (uint32_t *to = cortexm_bss; to < cortexm_bss_end; to++) {
         *to = 0;
         STEP;
@@ -51,6 +53,7 @@ __attribute__((naked)) void cortexm_reset(void) {
 
 uint32_t board_stack_left(void) {
     const uint32_t *word = cortexm_stack_bottom;
+    // cppcheck-suppress comparePointers ; likewise
     while (word < cortexm_stack_top && *word == PAINT) {
         word++;
     }

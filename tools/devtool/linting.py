@@ -123,6 +123,24 @@ def tidy_stamp(commands: Mapping[str, list[str]], path: Path) -> Path:
     return BUILD / "tidy" / digest.hexdigest()
 
 
+HOSTED: Final = ("firmware", "hal/board", "hal/linux", "hal/posix")
+"""Where the C is that is compiled for this machine."""
+ANALYSED: Final = ("-Ifirmware", "-Ifirmware/include", "-Ihal", "-Ihal/include", "-Ihal/linux/argusd")
+
+
+def analyser(run: Run) -> None:
+    """Follow the paths through each C file: by gcc on its own, by cppcheck with all of them."""
+    files = [path.relative_to(ROOT) for path in c_files(".c", folders=HOSTED)]
+    compiler = ["gcc", "-std=gnu11", "-O1", "-fanalyzer", "-Werror", "-DARGUS_SONARS=32", "-DARGUS_ASSERTS"]
+    with concurrent.futures.ThreadPoolExecutor(CORES) as pool:
+        jobs = [pool.submit(run, [*compiler, *ANALYSED, "-c", path, "-o", os.devnull]) for path in files]
+    for job in jobs:
+        job.result()
+    checker = ["cppcheck", "--quiet", "--std=c11", "--enable=warning,performance,portability"]
+    checker += ["--inline-suppr", "--error-exitcode=1", f"-j{CORES}", "-DARGUS_SONARS=32"]
+    run([*checker, *ANALYSED, "firmware", "hal"])
+
+
 def mypy(run: Run) -> None:
     """Run mypy over everything written in Python."""
     run([VENV / "bin/mypy"])
@@ -162,6 +180,12 @@ def api(run: Run) -> None:
 
 LINT_STAGES: Final = (
     Stage("clang-tidy", "defects in firmware/, hal/, hil_sim/ and tools/", clang_tidy, ("debug",)),
+    Stage(
+        "analyser",
+        "paths through firmware/ and hal/ that gcc and cppcheck find wrong",
+        analyser,
+        needs=("cppcheck",),
+    ),
     Stage(
         "complexity",
         "function length and complexity",

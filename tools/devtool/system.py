@@ -142,6 +142,7 @@ NEEDS: Final = {
     "systemd": command_need("systemd-analyze", "systemd"),
     "can-utils": command_need("candump", "can-utils"),
     "doxygen": command_need("doxygen", "doxygen"),
+    "cppcheck": command_need("cppcheck", "cppcheck"),
 }
 BASIC_NEEDS: Final = ("gcc", "libc", "cmake", "generator", "venv", "inih", "curses")
 PRESET_NEEDS: Final = {

@@ -134,6 +134,7 @@ static void greet(guards_t *self, int index, uint32_t now_ms) {
     const bool was_there = at->client >= 0;
     int other = -1;
     guard_port_accept(at, &other);
+    // cppcheck-suppress incorrectLogicOperator ; guard_port_accept() may have set at->client
     const bool came = other >= 0 || (!was_there && at->client >= 0);
     if (came) {
         make_room(self, now_ms);
