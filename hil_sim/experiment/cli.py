@@ -26,11 +26,11 @@ examples:
   argus-sim experiment fig9 --out /tmp/x                rotations for all 62 sets of dead sonars, and the picture
   argus-sim experiment journey --masks one,front --worlds lab,office --seeds 1-2 --out /tmp/x
   argus-sim experiment journey --out study --resume     the whole study, 19,800 journeys; interrupt it as you like
-  argus-sim experiment journey --results docs/samples/journeys.csv    tables and pictures of results that are there
+  argus-sim experiment journey --results docs/samples/journeys.csv.gz    tables and pictures of results that are there
   argus-sim experiment journey --one adaptive/judge/office/3/1+2/plain
   argus-sim experiment firing                           how often living sonars are heard when others are dead
   argus-sim experiment wheel                            wheels that are short by 1, 5 and 10 %, named and countered
-  argus-sim experiment all --results docs/samples/journeys.csv --doc docs/experiments.md
+  argus-sim experiment all --results docs/samples/journeys.csv.gz --doc docs/experiments.md
 
 What each of them shows, and what came of it: docs/experiments.md.
 

@@ -5,7 +5,9 @@ from __future__ import annotations
 
 import argparse
 import csv
+import gzip
 import json
+import zlib
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final
@@ -84,10 +86,16 @@ def _cell(value: Any) -> Any:
 
 
 def read_table(path: Path) -> list[Record]:
-    """Return the records of a table; SimError when it is none."""
+    """Return the records of a table, compressed by gzip or not; SimError when it is none."""
     try:
-        with path.open(encoding="utf-8", newline="") as file:
+        with (
+            gzip.open(path, "rt", encoding="utf-8", newline="")
+            if path.suffix == ".gz"
+            else path.open(encoding="utf-8", newline="") as file
+        ):
             rows = list(csv.DictReader(file))
+    except (gzip.BadGzipFile, EOFError, zlib.error):
+        raise SimError(f"{path}: the archive is damaged; name a {TABLE} of this study") from None
     except OSError as error:
         raise SimError(f"{path}: cannot read it ({error.strerror}); name a {TABLE} of this study") from error
     if not rows or tuple(rows[0]) != COLUMNS:

@@ -15,7 +15,7 @@ from hil_sim.experiment.home import off_deg
 from hil_sim.experiment.stage import Stage
 
 ROOT = Path(__file__).resolve().parents[3]
-RESULTS = ROOT / "docs" / "samples" / "journeys.csv"
+RESULTS = ROOT / "docs" / "samples" / "journeys.csv.gz"
 
 
 def experiment(*words: str) -> int:
@@ -88,6 +88,18 @@ def test_the_published_table_makes_the_page(tmp_path: Path, capsys: pytest.Captu
     lines = [line for line in out.splitlines() if line.startswith("|")]
     assert lines
     assert [line for line in lines if line not in page] == []
+
+
+@pytest.mark.parametrize("part", [b"no archive", RESULTS.read_bytes()[:5000]])
+def test_a_damaged_archive_is_one_line(
+    part: bytes, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "journeys.csv.gz"
+    path.write_bytes(part)
+    assert experiment("journey", "--results", str(path), "--out", str(tmp_path / "out")) == 2
+    error = capsys.readouterr().err
+    assert "the archive is damaged" in error
+    assert error.count("\n") == 1, error
 
 
 def test_table1_sees_each_object_with_its_own_sonar() -> None:
