@@ -66,13 +66,13 @@ bool argus_looks_stands(argus_looks_t *const self, const int sonar, const argus_
 void argus_looks_rename(argus_looks_t *const self, const int sonar, const argus_fault_kind_t from,
                         const argus_fault_kind_t to) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    self->hold[sonar].lawless |= from == ARGUS_KIND_SLOW && to == ARGUS_KIND_WRONG;
+    self->hold[sonar].slow_withdrawn |= from == ARGUS_KIND_SLOW && to == ARGUS_KIND_WRONG;
 }
 
 void argus_looks_forget(argus_looks_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    self->hold[sonar].borne_out = 0;
-    self->hold[sonar].lawless = false;
+    self->hold[sonar].confirmed = 0;
+    self->hold[sonar].slow_withdrawn = false;
 }
 
 void argus_looks_free(argus_looks_t *const self) {
@@ -110,8 +110,8 @@ bool argus_looks_hold(const argus_looks_t *const self, const int sonar, const ui
 bool argus_looks_prove(argus_looks_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_hold_t *const hold = &self->hold[sonar];
-    hold->borne_out = (uint8_t)argus_min(hold->borne_out + 1, PROOFS);
-    return hold->borne_out >= (self->settling > 0 ? ARGUS_LOOKS_PROOFS_AT_GOAL : PROOFS);
+    hold->confirmed = (uint8_t)argus_min(hold->confirmed + 1, PROOFS);
+    return hold->confirmed >= (self->settling > 0 ? ARGUS_LOOKS_PROOFS_AT_GOAL : PROOFS);
 }
 
 void argus_looks_over(argus_looks_t *const self) {

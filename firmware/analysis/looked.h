@@ -12,8 +12,8 @@
 typedef struct {
     uint32_t odometer_mm;
     uint8_t cleared;
-    uint8_t borne_out; // looks in a row that left it its name
-    bool lawless;      // it was named slow, and then wrong after all
+    uint8_t confirmed;   // looks in a row that left it its name
+    bool slow_withdrawn; // it was named slow, and then wrong after all
 } argus_hold_t;
 
 // The kind that the evidence gives it, and since when.

@@ -80,7 +80,7 @@ bool argus_look_pays(const argus_t *const self) {
     return argus_guard_may_turn(&guard);
 }
 
-// A law of its readings that was found and given up again is none: what stays is that others contradict it.
+// A `slow` diagnosis once withdrawn is not reinstated: what stays is that others contradict it.
 argus_fault_kind_t argus_named_kind(const argus_t *const self, const int sonar,
                                     const argus_finding_t *const finding) {
     ARGUS_ASSERT(sonar >= 0 && sonar < self->knowledge.sonars);
@@ -88,5 +88,5 @@ argus_fault_kind_t argus_named_kind(const argus_t *const self, const int sonar,
     if (kind == ARGUS_KIND_NONE && finding->doubted) {
         return ARGUS_KIND_OFF; // it fails with the whole of its array
     }
-    return kind == ARGUS_KIND_SLOW && self->looks.hold[sonar].lawless ? ARGUS_KIND_WRONG : kind;
+    return kind == ARGUS_KIND_SLOW && self->looks.hold[sonar].slow_withdrawn ? ARGUS_KIND_WRONG : kind;
 }

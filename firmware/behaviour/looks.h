@@ -22,8 +22,7 @@ argus_mask_t argus_to_try(const argus_t *self);
 // At the goal: what is named and open is settled there, where a look costs no way. 0: nothing.
 argus_mask_t argus_to_settle(const argus_t *self);
 
-// The kind that the evidence gives it (NONE: none): `wrong` where a law of its readings was named and given
-// up.
+// The kind that the evidence gives it (NONE: none): `wrong` where a `slow` diagnosis was withdrawn.
 argus_fault_kind_t argus_named_kind(const argus_t *self, int sonar, const argus_finding_t *finding);
 
 #endif

@@ -151,8 +151,9 @@ static bool is_proved(const argus_t *const self, argus_looks_t *const looks, con
                       const argus_fault_kind_t kind) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     ARGUS_ASSERT((unsigned)kind < ARGUS_KINDS);
-    const bool beset = argus_robot_faces_forward(self->knowledge.robot, sonar); // neighbours on either side
-    const bool by_others = beset && (kind == ARGUS_KIND_OFF || kind == ARGUS_KIND_WRONG);
+    const bool has_neighbours =
+        argus_robot_faces_forward(self->knowledge.robot, sonar); // neighbours on either side
+    const bool by_others = has_neighbours && (kind == ARGUS_KIND_OFF || kind == ARGUS_KIND_WRONG);
     if (!by_others || kind != self->knowledge.sonar[sonar].kind || self->evidence.busy) {
         return false;
     }

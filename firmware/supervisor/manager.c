@@ -19,7 +19,7 @@
 #include "supervisor/modes.h"
 #include "supervisor/motions.h"
 #include "supervisor/orders.h"
-#include "supervisor/stranger.h"
+#include "supervisor/robot_changed.h"
 
 #define AWAY_CDEG 500
 #define IDLE_POLL_MS 50u
@@ -294,7 +294,7 @@ static void handle_link(argus_t *const self, const unsigned bits) {
 static void handle(argus_t *const self, const unsigned bits) {
     handle_link(self, bits);
     if ((bits & ARGUS_SESSION_OTHER_ROBOT) != 0) { // first: nothing of the other one's plan is for this robot
-        argus_meet_stranger(self);
+        argus_robot_changed(self);
     }
     if ((bits & ARGUS_SESSION_DID_OPEN) != 0) {
         on_open(self);

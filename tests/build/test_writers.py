@@ -41,7 +41,7 @@ def test_base_c_alone_writes_the_heading_to_return_to() -> None:
 
 
 def test_looked_c_alone_writes_what_is_remembered_of_looks() -> None:
-    for field in ("check_ms", "lost_ms", "settling", "tried", "unheard_said", "cleared", "lawless"):
+    for field in ("check_ms", "lost_ms", "settling", "tried", "unheard_said", "cleared", "slow_withdrawn"):
         assert writers(field) == {"analysis/looked.c"}, field
 
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Stops another robot than the one before, forgets that one, and waits for an operator.
-#include "supervisor/stranger.h"
+#include "supervisor/robot_changed.h"
 
 #include <string.h>
 
@@ -31,7 +31,7 @@ static void forget(argus_t *const self) {
     argus_journey_restart(&self->travel);
 }
 
-void argus_meet_stranger(argus_t *const self) {
+void argus_robot_changed(argus_t *const self) {
     argus_emit(&self->events, ARGUS_EV_OTHER_ROBOT, self->session.differs);
     // It may still do what an earlier client asked.
     argus_stop_and_do(self, ARGUS_STOP_STOP, ARGUS_DO_NOTHING, false);
