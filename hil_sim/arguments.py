@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import argparse
 import re
+import sys
 from collections.abc import Callable, Iterator
 from typing import Any, Final, NoReturn
 
@@ -54,9 +55,24 @@ class Parser(argparse.ArgumentParser):
     def __init__(self, *arguments: Any, **named: Any) -> None:
         super().__init__(*arguments, **named)
         self._negative_number_matcher = _NEGATIVE
+        self._given: list[str] = []
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """Parse, and keep what was given for the words of an error."""
+        self._given = list(sys.argv[1:] if args is None else args)
+        return super().parse_known_args(args, namespace)
+
+    def _mistyped(self) -> str:
+        """Return a question for the first option given that is none: argparse misses others before it sees that."""
+        known = list(_options(self))
+        given = (word.partition("=")[0] for word in self._given if word.startswith("--") and word != "--")
+        odd = next((word for word in given if not any(option.startswith(word) for option in known)), "")
+        return meant(odd, known) if odd else ""
 
     def error(self, message: str) -> NoReturn:
         """Print the line and leave with code 2."""
+        if "required" in message:
+            message += self._mistyped()
         if unknown := _UNKNOWN.match(message):
             known = list(_options(self))
             message += _parted(unknown[1], known) or meant(unknown[1], known)

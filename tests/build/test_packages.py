@@ -54,7 +54,9 @@ target_link_libraries(app PRIVATE zephyr_interface argus)
 
 def built(*command: object) -> None:
     """Run a command that builds something."""
-    done = subprocess.run([str(word) for word in command], cwd=ROOT, check=False, capture_output=True, text=True)
+    done = subprocess.run(
+        [str(word) for word in command], cwd=ROOT, check=False, capture_output=True, text=True
+    )
     assert done.returncode == 0, done.stdout + done.stderr
 
 
@@ -87,7 +89,9 @@ def test_zephyr_module(tmp_path: Path) -> None:
     kconfig = (ROOT / module["build"]["kconfig"]).read_text(encoding="utf-8")
     options = set(re.findall(r"^config (\w+)", kconfig, re.MULTILINE))
     recipe = ROOT / module["build"]["cmake"]
-    assert set(re.findall(r"CONFIG_(\w+)", (recipe / "CMakeLists.txt").read_text(encoding="utf-8"))) == options
+    assert (
+        set(re.findall(r"CONFIG_(\w+)", (recipe / "CMakeLists.txt").read_text(encoding="utf-8"))) == options
+    )
     (sonars,) = re.findall(r"config ARGUS_SONARS\n(?:\t.*\n)*?\tdefault (\d+)", kconfig)
     given = {"SONARS": sonars, "MODULE": str(recipe), "EMBED": " ".join(str(ROOT / name) for name in EMBED)}
     text = re.sub(r"@(\w+)@", lambda found: given[found[1]], ZEPHYR)

@@ -5,11 +5,14 @@ from __future__ import annotations
 
 import argparse
 import doctest
+from pathlib import Path
 
 import pytest
 
 from hil_sim import arguments
 from hil_sim.arguments import Parser
+
+ROOT = Path(__file__).resolve().parents[2]
 
 
 def parser() -> Parser:
@@ -58,6 +61,29 @@ def test_what_begins_as_a_negative_number_is_a_value(text: str) -> None:
     one.add_argument("point", nargs="+")
     assert made.parse_args(["goto", text, "1,2", text]).point == [text, "1,2", text]
     assert made.parse_args(["goto", "--force", text]).force
+
+
+def test_an_option_that_is_mistyped_where_one_must_be_given(capsys: pytest.CaptureFixture[str]) -> None:
+    made = Parser(prog="prog", allow_abbrev=False)
+    one_of = made.add_mutually_exclusive_group(required=True)
+    one_of.add_argument("--sim", action="store_true")
+    one_of.add_argument("--connect")
+    for given, ending in (("--smi", "did you mean --sim?"), ("--zzz", "is required;"), ("", "is required;")):
+        with pytest.raises(SystemExit):
+            made.parse_args(given.split())
+        assert capsys.readouterr().err.endswith(f"{ending} see prog --help\n")
+
+
+def test_every_program_reports_so() -> None:
+    folders = [ROOT / "hil_sim", *(ROOT / "tools" / name for name in ("argus_tools", "argus_ros", "devtool"))]
+    plain = [
+        path.relative_to(ROOT).as_posix()
+        for folder in folders
+        for path in folder.rglob("*.py")
+        if "argparse.ArgumentParser(\n" in (text := path.read_text(encoding="utf-8"))
+        or "ArgumentParser()" in text
+    ]
+    assert plain == []
 
 
 def test_a_line_without_a_guess_ends_as_before(capsys: pytest.CaptureFixture[str]) -> None:

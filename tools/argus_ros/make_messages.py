@@ -17,6 +17,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
+from hil_sim.arguments import Parser
+
 PACKAGES: Final[dict[str, tuple[dict[str, tuple[str, ...]], tuple[str, ...]]]] = {
     "tf2_msgs": ({"TFMessage": ("geometry_msgs/TransformStamped[] transforms",)}, ("geometry_msgs",)),
     "p2os_msgs": (
@@ -138,7 +140,7 @@ def make(names: Sequence[str], prefix: Path) -> None:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Make what is missing; return the exit code."""
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="python -m argus_ros.make_messages",
         description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from argus_ros.parameters import ARGUS_USAGE, RANGE_GUARD_USAGE
+from hil_sim.arguments import meant
 
 EXIT_USAGE: Final = 2
 
@@ -20,7 +21,9 @@ def _asked(usage: str, arguments: Sequence[str] | None) -> tuple[list[str], int 
         return given, 0
     if given and given[0] != "--ros-args":
         print(
-            f"unknown argument '{given[0]}': parameters come behind --ros-args; see --help", file=sys.stderr
+            f"unknown argument '{given[0]}': parameters come behind --ros-args"
+            f"{meant(given[0], ['--help', '--ros-args']) or ';'} see --help",
+            file=sys.stderr,
         )
         return given, EXIT_USAGE
     try:

@@ -32,6 +32,7 @@ from argus_tools.foxglove import (
     stamp_of,
 )
 from argus_tools.foxglove_front import FOXGLOVE, Front, Gate, hidden_host, is_loopback
+from hil_sim.arguments import Parser
 from hil_sim.faults.values import value_words
 from hil_sim.version import add_version
 
@@ -266,7 +267,7 @@ def origin(text: str) -> str:
 
 def parser() -> argparse.ArgumentParser:
     """Return the parser of the command line."""
-    made = argparse.ArgumentParser(
+    made = Parser(
         prog="argus-foxglove",
         description="Show live in Foxglove what argusd knows.",
         formatter_class=argparse.RawDescriptionHelpFormatter,

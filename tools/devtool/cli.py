@@ -15,6 +15,7 @@ from devtool.linting import LINT_STAGES, format_stages
 from devtool.setup import leave_venv
 from devtool.stages import add_stage_options, staged_command
 from devtool.testing import QUICK_STAGES, SOAK_STAGES, TEST_STAGES
+from hil_sim.arguments import Parser
 
 WHAT: Final = (
     "The one command of the project: sets everything up, then demonstrates, tests, builds or measures Argus."
@@ -128,7 +129,7 @@ def add_making(add: Add) -> None:
 
 def make_parser() -> argparse.ArgumentParser:
     """Return the parser of the whole command line."""
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="tools/dev",
         description=WHAT,
         epilog="examples:\n  tools/dev demo\n  tools/dev test\n  tools/dev test --help\n\n" + EXIT_CODES,
