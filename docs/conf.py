@@ -69,6 +69,7 @@ ACCESSIBLE = {
     '<aside class="toc-drawer">': '<aside class="toc-drawer" aria-label="On this page">',
     '<aside class="toc-drawer no-toc">': '<aside class="toc-drawer no-toc" aria-label="On this page">',
     "<pre>": '<pre tabindex="0">',
+    '<div id="search-results"></div>': '<h1>Search</h1>\n<div id="search-results"></div>',
     '<div class="table-wrapper': '<div tabindex="0" class="table-wrapper',
 }
 """What the theme leaves out: levels of headings, names of landmarks, and that keys scroll what is wide."""
