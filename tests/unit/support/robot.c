@@ -8,8 +8,8 @@
 #include <string.h>
 
 #include "adjustment/guard.h"
-#include "knowledge/config.h"
 #include "behaviour/state.h"
+#include "knowledge/config.h"
 
 #define TICK_MS 10u
 #define TICK_S 0.01
