@@ -31,6 +31,8 @@
 #define SNAPSHOT_MS 500u
 #define SNAPSHOTS 64
 #define REFERENCE_MS 60000u
+// link_lost_ms: after a longer silence the session begins anew, and the course may be lost.
+#define DELAY_MOST_MS 4000u
 #define LATE_MS 60000u // later than the clean mission: it waits for ever
 #define REACHED_MM 150.0
 #define REST_MS 1000u
@@ -178,7 +180,7 @@ static robot_harm_t harm_of(robot_way_t way, uint32_t at, robot_harm_kind_t kind
         harm.with = chance % 256;
         break;
     case ROBOT_DELAY:
-        harm.with = 100 + chance % 4901;
+        harm.with = 100 + chance % (DELAY_MOST_MS - 99);
         break;
     case ROBOT_LATENCY:
         harm.with = 50 + chance % 1951;
