@@ -122,6 +122,13 @@ def _share(found: Summary) -> str:
     return f"{found['hits']} of {found['of']}"
 
 
+def _met(row: dict[str, Any]) -> str:
+    """Contacts with people. Figures of before the split do not tell who came to whom."""
+    if "people_hit" in row:
+        return str(row["people_hit"])
+    return f"{row['met_ahead']} ahead, {row['walked_into']} walked in"
+
+
 def readme(found: Summary) -> str:
     """Return what a newcomer wants to know of the journeys: one line for each condition."""
     lines = [
@@ -140,7 +147,7 @@ def readme(found: Summary) -> str:
         row, ideal = rows[name, "argus"], rows.get((name, "ideal"), rows["rooms", "ideal"])
         ratio = row["over_ideal"]["ratio"]
         over = "-" if ratio is None else f"{ratio:.2f}"
-        people = f"{row['people_hit']}, {ideal['people_hit']}" if "people" in name else "-"
+        people = f"{_met(row)}; {_met(ideal)}" if "people" in name else "-"
         named = f"{row['false_names']['rate']:.0f}"
         cells = (
             words,

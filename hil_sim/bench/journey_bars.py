@@ -118,6 +118,11 @@ def _safety(own: Mapping[str, Record]) -> Iterator[Bar]:
     yield Bar(
         "all rows: attributable collisions", "0 in 1000 missions", float(hits), None, "", missions, verdict
     )
+    peopled = [row for name, row in own.items() if parse_row(name).people]
+    if peopled:
+        met = float(sum(row["met_ahead"] for row in peopled))
+        name = "rows with people: somebody met ahead"
+        yield Bar(name, "0", met, None, "", _missions(peopled), "fail" if met else "pass")
     healthy = [row for name, row in own.items() if not parse_row(name).has_faults]
     near = [(row["closest_mm"]["least"], row["row"]) for row in healthy if row["closest_mm"]["n"]]
     if near:

@@ -96,7 +96,8 @@ def _safety(group: Sequence[Record]) -> Record:
         "closest_mm": _spread([r["closest_mm"] for r in group if r["closest_mm"] is not None]),
         "collisions": sum(bool(record["collisions"]) for record in group),
         "attributable": int(_total(group, "attributable")),
-        "people_hit": int(_total(group, "people_hit")),
+        "met_ahead": int(_total(group, "met_ahead")),
+        "walked_into": int(_total(group, "walked_into")),
         "struck": int(_total(group, "struck")),
     }
 

@@ -24,7 +24,7 @@ SLOW: Final = 0.8
 _MISSION: Final = (
     "id", "driver", "split", "row", "world", "seed", "word", "truly", "goal_mm", "odometry_off_mm", "course_mm",
     "progress_mm", "driven_mm", "t_s", "driving_s", "stops", "looks", "looking_s", "turned_deg", "energy_j",
-    "closest_mm", "early_mm", "attributable", "people_hit", "struck",
+    "closest_mm", "early_mm", "attributable", "met_ahead", "walked_into", "struck",
 )  # fmt: skip
 _COUNTED: Final = ("false_names", "false_disables", "collisions")
 
@@ -119,7 +119,7 @@ def _value(value: float | None, unit: str) -> str:
 
 _JOURNEY: Final = (
     "row", "driver", "n", "mm/s", "over ideal", "median, worst", "truly there, %", "by its word", "gave up",
-    "odometry off mm", "closest mm: least, median", "collisions (attributable)", "people hit",
+    "odometry off mm", "closest mm: least, median", "collisions (attributable)", "people: met ahead, walked into",
 )  # fmt: skip
 _PRICE: Final = (
     "row", "driver", "clock h", "stops/h", "looks/h", "s looking/h", "deg/m", "J/m", "false names/h",
@@ -143,7 +143,7 @@ def _journey(row: Record) -> tuple[str, ...]:
         _number(row["odometry_off_mm"], 0),
         f"{_number(row['closest_mm']['least'], 0)}, {_number(row['closest_mm']['median'], 0)}",
         f"{row['collisions']} ({row['attributable']})",
-        str(row["people_hit"]),
+        f"{row['met_ahead']}, {row['walked_into']}",
     )
 
 

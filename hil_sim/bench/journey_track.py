@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 import time
 import traceback
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final
 
@@ -18,9 +19,10 @@ from hil_sim.bench.plan import without_faults
 from hil_sim.sil import Collision, Mission, Outcome, Sighting, Sil, run
 from hil_sim.tables.robot import robot_table
 from hil_sim.world.body import BodyModel
-from hil_sim.world.model import World
+from hil_sim.world.model import Floats, Pose, World
+from hil_sim.world.moving import MovingSolids, Walker
 
-RECORD_FORMAT: Final = 2
+RECORD_FORMAT: Final = 3
 """Raised whenever a record gets another field: results of two formats do not mix."""
 ARRIVED_MM: Final = 150.0
 """The robot is truly at its goal when its centre is within this of it."""
@@ -29,6 +31,13 @@ EARLY_S: Final = 330.0
 LOOKING: Final = "VERIFYING"
 FREE: Final = "DRIVING"
 """Modes: of looks, and of free driving."""
+MET_S: Final = 1.0
+"""A person who stood, or whom a straight line from the robot's front reached, for so long, is met ahead."""
+SEEN_MM: Final = 4000.0
+"""Nearer than this a person ahead is seen."""
+_AHEAD_DEG: Final = 50.0
+"""So far off the heading the forward sonars look."""
+_STANDS_MM: Final = 1.0
 _PATH_MM: Final = 200.0
 _RUNS_MM_S, _RESTS_MM_S = 50.0, 5.0
 _TOUCH_MM: Final = robot_table().body.reach_mm + 5.0
@@ -36,6 +45,57 @@ _TOUCH_MM: Final = robot_table().body.reach_mm + 5.0
 
 Record = dict[str, Any]
 Spot = tuple[int, int]
+
+
+@dataclass
+class People:
+    """Where people are with each SIP: since when each of them stands, and since when the robot sees him ahead."""
+
+    t_s: float = 0.0
+    at: list[tuple[float, float]] = field(default_factory=list)
+    stands_s: list[float] = field(default_factory=list)
+    seen_s: list[float | None] = field(default_factory=list)
+    hits: int = 0
+    met: list[float] = field(default_factory=list)
+
+    def note(self, t_s: float, robot: Pose, people: Sequence[tuple[float, float]], walls: Floats) -> None:
+        """Take where people are at a moment; walls: what hides them."""
+        before = self.at or list(people)
+        self.stands_s = self.stands_s or [t_s] * len(people)
+        self.seen_s = self.seen_s or [None] * len(people)
+        for k, (was, now) in enumerate(zip(before, people, strict=True)):
+            if math.dist(was, now) > _STANDS_MM:
+                self.stands_s[k] = t_s
+            if not is_seen(robot, now, walls):
+                self.seen_s[k] = None
+            elif self.seen_s[k] is None:
+                self.seen_s[k] = t_s
+        self.at, self.t_s = list(people), t_s
+
+    def is_met_ahead(self, hit: Collision, heading_deg: float) -> bool:
+        """Whether the robot drove on to somebody who stood before it, or whom it could see, for a second or more."""
+        if not self.at:
+            return False
+        k = min(range(len(self.at)), key=lambda i: math.dist(self.at[i], (hit.x, hit.y)))
+        since = [t for t in (self.stands_s[k], self.seen_s[k]) if t is not None]
+        ahead = abs(_off_deg(Pose(hit.x, hit.y, heading_deg), self.at[k])) <= 90
+        return ahead and hit.t_s - min(since) >= MET_S
+
+
+def _off_deg(robot: Pose, at: tuple[float, float]) -> float:
+    bearing = math.degrees(math.atan2(at[1] - robot.y_mm, at[0] - robot.x_mm))
+    return (bearing - robot.heading_deg + 180) % 360 - 180
+
+
+def is_seen(robot: Pose, at: tuple[float, float], walls: Floats) -> bool:
+    """Whether a place is ahead of the robot, near enough, and no wall between."""
+    dx, dy = at[0] - robot.x_mm, at[1] - robot.y_mm
+    if math.hypot(dx, dy) > SEEN_MM or abs(_off_deg(robot, at)) > _AHEAD_DEG:
+        return False
+    x1, y1, x2, y2 = walls.T
+    ends = [dx * (y - robot.y_mm) - dy * (x - robot.x_mm) for x, y in ((x1, y1), (x2, y2))]
+    sides = [(x2 - x1) * (y - y1) - (y2 - y1) * (x - x1) for x, y in ((robot.x_mm, robot.y_mm), at)]
+    return not bool(((ends[0] * ends[1] < 0) & (sides[0] * sides[1] < 0)).any())
 
 
 @dataclass
@@ -52,6 +112,7 @@ class Diary:
     stops: list[Spot] = field(default_factory=list)
     looks: list[Spot] = field(default_factory=list)
     modes: dict[str, float] = field(default_factory=dict)
+    people: People = field(default_factory=People)
     turned_deg: float = 0.0
     closest_mm: float | None = None
     early_mm: float = 0.0
@@ -75,6 +136,19 @@ class Diary:
         self._note_way(spot, (len(self.stops), len(self.looks)) != marks)
         if sil.mode == FREE and sil.robot.drive.v > _RESTS_MM_S:
             self._note_clearance(sil)
+        if isinstance(sil.robot.moving, MovingSolids):
+            self._note_people(sil, sil.robot.moving, sighting.t_s)
+
+    def _note_people(self, sil: Sil, moving: MovingSolids, t_s: float) -> None:
+        """Judge the contacts since the SIP before by what was there then."""
+        pose = sil.robot.chassis.pose
+        hits = sil.robot.hits[self.people.hits :]
+        self.people.met += [
+            h.t_s for h in hits if not h.struck and self.people.is_met_ahead(h, pose.heading_deg)
+        ]
+        self.people.hits += len(hits)
+        walkers = [(a.x, a.y) for a in moving.actors if isinstance(a, Walker)]
+        self.people.note(t_s, pose, walkers, sil.world.segments)
 
     def _note_mode(self, mode: str, t_s: float, spot: Spot) -> None:
         before = self._mode or mode
@@ -136,12 +210,13 @@ def run_case(case: Case) -> tuple[Record, Outcome]:
     sil = Sil(mission, trace=diary)
     outcome = sil.run()
     people = take_people(outcome, sil.world)
+    met = sum(hit.t_s in diary.people.met for hit in people)
     twin = None
     if mission.faults and any(not hit.struck for hit in outcome.collisions):
         twin = run(without_faults(mission))
         take_people(twin, sil.world)
     record = judge(outcome, diary.track, twin)
-    record["people_hit"] = people
+    record |= {"met_ahead": met, "walked_into": len(people) - met}
     record["looking_s"] = record.pop("verifying_s")
     record["stop_commands"] = record.pop("stops")
     record |= _arrival(sil, mission) | diary.fields()
@@ -151,14 +226,14 @@ def run_case(case: Case) -> tuple[Record, Outcome]:
     return head(case) | record | {"wall_s": round(time.perf_counter() - begin, 3)}, outcome
 
 
-def take_people(outcome: Outcome, world: World) -> int:
-    """Take out the collisions of a driving robot with people, who are where no wall is, and return how many.
+def take_people(outcome: Outcome, world: World) -> list[Collision]:
+    """Take out the collisions of a driving robot with people, who are where no wall is, and return them.
 
     The same mission without the fault meets people elsewhere, so chance would say which are the fault's.
     """
     people = [hit for hit in outcome.collisions if not hit.struck and _from_walls_mm(world, hit) > _TOUCH_MM]
     outcome.collisions = [hit for hit in outcome.collisions if hit not in people]
-    return len(people)
+    return people
 
 
 def _from_walls_mm(world: World, hit: Collision) -> float:

@@ -43,7 +43,7 @@ class _Actor(Protocol):
         """Let a sub-step pass; tell whether it moved."""
 
 
-class _Walker:
+class Walker:
     """A person."""
 
     def __init__(self, person: Person, body: BodyShape) -> None:
@@ -208,7 +208,7 @@ class MovingSolids:
         """`body`: of the robot for which they wait; None is the one that is emulated by default."""
         body = body if body is not None else robot_table().body
         self.actors: list[_Actor] = [
-            _Walker(mover, body) if isinstance(mover, Person) else _Leaf(mover, body) for mover in movers
+            Walker(mover, body) if isinstance(mover, Person) else _Leaf(mover, body) for mover in movers
         ]
         self.moment = 0
         self.shape: Floats = np.concatenate([actor.shape for actor in self.actors])

@@ -6,17 +6,30 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
+import numpy as np
 import pytest
 from bench.journeys import DEADLY, deadly
 from bench.missions import outcome
 
 from hil_sim.bench.journey import mission_of, parse_id
-from hil_sim.bench.journey_track import FREE, LOOKING, Diary, failed, head, run_case, take_people, work
+from hil_sim.bench.journey_track import (
+    FREE,
+    LOOKING,
+    Diary,
+    People,
+    failed,
+    head,
+    is_seen,
+    run_case,
+    take_people,
+    work,
+)
 from hil_sim.bench.pool import run_here
 from hil_sim.sil import Collision, Sighting, Sil, run
 from hil_sim.tables.robot import robot_table
 from hil_sim.world.body import BodyModel
 from hil_sim.world.files import load_world
+from hil_sim.world.model import Floats, Pose
 
 CASE = "argus/tune/doors+one+start/doors-1/2"
 
@@ -126,5 +139,62 @@ def test_people_are_no_collision_with_a_wall() -> None:
     wall, person = Collision(3.0, -1700.0, 0.0, False), Collision(4.0, 100.0, 100.0, False)
     struck = Collision(5.0, 100.0, 100.0, True)
     result = outcome(hits=[wall, person, struck])
-    assert take_people(result, load_world("lab")) == 1
+    assert take_people(result, load_world("lab")) == [person]
     assert result.collisions == [wall, struck]
+
+
+WALLS = np.array([[5000.0, -3000.0, 5000.0, 3000.0]])
+"""Hides nobody of these."""
+
+
+def approach(
+    robot: list[tuple[float, float]], person: list[tuple[float, float]], walls: Floats = WALLS
+) -> bool:
+    """Whether the contact at the end of both ways, in steps of 0.1 s, is one that was met ahead."""
+    people = People()
+    for k, (at, who) in enumerate(zip(robot, person, strict=True)):
+        people.note(k / 10, Pose(*at, 0.0), [who], walls)
+    x, y = robot[-1]
+    return people.is_met_ahead(Collision(len(robot) / 10, x, y, False), 0.0)
+
+
+def test_who_stands_before_the_robot_is_met_ahead() -> None:
+    way = [(-1500.0 + 30 * k, 0.0) for k in range(40)]
+    assert approach(way, [(200.0, 0.0)] * 40)
+
+
+def test_who_is_seen_coming_for_a_second_is_met_ahead() -> None:
+    way = [(-600.0 + 20 * k, 0.0) for k in range(20)]
+    comes = [(2000.0 - 80 * k, 0.0) for k in range(20)]
+    assert approach(way, comes)
+
+
+def test_who_comes_from_the_side_or_from_behind_walked_in() -> None:
+    way = [(20.0 * k, 0.0) for k in range(30)]
+    aside = [(580.0, -1800.0 + 50 * k) for k in range(30)]
+    assert not approach(way, aside)
+    behind = [(-2500.0 + 90 * k, 0.0) for k in range(30)]
+    assert not approach(way, behind)
+
+
+def test_who_steps_out_of_a_door_just_before_the_robot_walked_in() -> None:
+    wall = np.array([[-5000.0, -350.0, 5000.0, -350.0]])
+    way = [(20.0 * k, 0.0) for k in range(30)]
+    steps_out = [(2600.0 - 55 * k, -1200.0 + 37 * k) for k in range(30)]
+    assert not approach(way, steps_out, wall)
+    assert approach(way, steps_out, WALLS), "without the wall he is seen for longer"
+
+
+def test_a_person_beyond_a_wall_or_aside_is_not_seen() -> None:
+    robot = Pose(0.0, 0.0, 0.0)
+    assert is_seen(robot, (3000.0, 500.0), WALLS)
+    assert not is_seen(robot, (5500.0, 0.0), WALLS), "too far"
+    assert not is_seen(robot, (0.0, 800.0), WALLS), "abeam"
+    assert not is_seen(robot, (3000.0, 0.0), np.array([[1000.0, -200.0, 1000.0, 200.0]]))
+    assert is_seen(robot, (3000.0, 0.0), np.array([[1000.0, 100.0, 1000.0, 400.0]]))
+
+
+def test_a_journey_among_people_splits_its_contacts() -> None:
+    record, outcome_ = run_case(parse_id("ideal/tune/rooms+people/lab/1"))
+    people = record["met_ahead"] + record["walked_into"]
+    assert people + len(record["collisions"]) + record["struck"] >= len(outcome_.collisions)
