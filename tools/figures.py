@@ -122,11 +122,8 @@ def _share(found: Summary) -> str:
     return f"{found['hits']} of {found['of']}"
 
 
-def _met(row: dict[str, Any]) -> str:
-    """Contacts with people. Figures of before the split do not tell who came to whom."""
-    if "people_hit" in row:
-        return str(row["people_hit"])
-    return f"{row['met_ahead']} ahead, {row['walked_into']} walked in"
+def _contacts(row: Summary) -> str:
+    return journey_report.contacts(row).removesuffix(", not split")
 
 
 def readme(found: Summary) -> str:
@@ -147,7 +144,7 @@ def readme(found: Summary) -> str:
         row, ideal = rows[name, "argus"], rows.get((name, "ideal"), rows["rooms", "ideal"])
         ratio = row["over_ideal"]["ratio"]
         over = "-" if ratio is None else f"{ratio:.2f}"
-        people = f"{_met(row)}; {_met(ideal)}" if "people" in name else "-"
+        people = f"{_contacts(row)}; {_contacts(ideal)}" if "people" in name else "-"
         named = f"{row['false_names']['rate']:.0f}"
         cells = (
             words,

@@ -127,6 +127,13 @@ _PRICE: Final = (
 )  # fmt: skip
 
 
+def contacts(row: Record) -> str:
+    """Contacts with people: met ahead, walked into. Published figures of before the split have their sum alone."""
+    if "people_hit" in row:
+        return f"{row['people_hit']}, not split"
+    return f"{row['met_ahead']}, {row['walked_into']}"
+
+
 def _journey(row: Record) -> tuple[str, ...]:
     over = row["over_ideal"]
     ratio = "-" if over["ratio"] is None else f"{over['ratio']:.2f} ({over['low']:.2f} to {over['high']:.2f})"
@@ -143,7 +150,7 @@ def _journey(row: Record) -> tuple[str, ...]:
         _number(row["odometry_off_mm"], 0),
         f"{_number(row['closest_mm']['least'], 0)}, {_number(row['closest_mm']['median'], 0)}",
         f"{row['collisions']} ({row['attributable']})",
-        f"{row['met_ahead']}, {row['walked_into']}",
+        contacts(row),
     )
 
 

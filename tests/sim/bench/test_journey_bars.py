@@ -93,3 +93,10 @@ def test_an_obstacle_set_is_judged_by_the_word_of_the_robot() -> None:
     assert verdicts(off)["doors: goals reached by its word"] == "pass"
     lost = [one | {"word": "running"} for one in off]
     assert verdicts(lost)["doors: goals reached by its word"] == "fail"
+
+
+def test_somebody_met_ahead_fails_a_row_with_people() -> None:
+    name = "rows with people: somebody met ahead"
+    for met, verdict in ((0, "pass"), (1, "fail")):
+        assert verdicts(many("rooms+people", 4, met_ahead=met, walked_into=3))[name] == verdict
+    assert name not in verdicts(many("rooms", 4))
