@@ -419,7 +419,8 @@ static bool is_beside_way(const argus_guard_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const argus_robot_t *const robot = self->knowledge->robot;
     const argus_sonar_pose_t pose = argus_robot_pose(robot, sonar);
-    const int32_t edge_cdeg = 18000 - argus_abs(pose.heading_deg) * 100 - robot->cone_deg * 50;
+    const int32_t edge_cdeg =
+        18000 - argus_abs(pose.heading_deg) * 100 - argus_robot_cone_deg(robot, sonar) * 50;
     const bool flank = (argus_robot_rear_flank(robot) >> sonar & 1u) != 0;
     if (!self->profile->passes_abeam || flank || edge_cdeg <= 0) {
         return false;

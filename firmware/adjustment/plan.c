@@ -33,8 +33,9 @@ argus_plan_t argus_plan(const argus_robot_t *const robot, const argus_policy_t p
     argus_plan_t plan;
     memset(&plan, 0, sizeof plan);
     plan.disabled = disabled & argus_robot_forward(robot);
-    plan.looks = (argus_mask_t)((row->ring ? living & argus_robot_all(robot) : argus_robot_forward(robot)) &
-                                ~(unsigned)plan.disabled);
+    plan.looks =
+        (argus_mask_t)((row->ring ? living & argus_robot_looking(robot) : argus_robot_forward(robot)) &
+                       ~(unsigned)plan.disabled);
     plan.return_each = row->walks;
     plan.complete = plan.disabled == 0;
     if (plan.complete) {

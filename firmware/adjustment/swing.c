@@ -37,7 +37,7 @@ static bool meets_cone(const argus_knowledge_t *const knowledge, const int sonar
     const argus_sonar_pose_t pose = argus_robot_pose(robot, sonar);
     const int32_t reading_mm = knowledge->sonar[sonar].reading_mm;
     for (int k = -1; k <= 1; k++) {
-        const int32_t bearing = pose.heading_deg * 100 + robot->cone_deg * 50 * k;
+        const int32_t bearing = pose.heading_deg * 100 + argus_robot_cone_deg(robot, sonar) * 50 * k;
         const argus_point_t at = {pose.x_mm + reading_mm * argus_cos(bearing) / ARGUS_TRIG_ONE,
                                   pose.y_mm + reading_mm * argus_sin(bearing) / ARGUS_TRIG_ONE};
         if (is_met(robot, at, by_cdeg)) {

@@ -197,7 +197,8 @@ static bool is_proven(const argus_dark_t *const dark, const int run, const int h
 
 static void look_at(argus_common_t *const self, const argus_knowledge_t *const knowledge, const int array) {
     argus_dark_t *const dark = &self->of[array];
-    const argus_mask_t its = argus_robot_array(knowledge->robot, array);
+    const argus_mask_t all = argus_robot_array(knowledge->robot, array);
+    const argus_mask_t its = (argus_mask_t)(all & ~(unsigned)argus_robot_sectors(knowledge->robot));
     const argus_mask_t in_use = (argus_mask_t)(its & ~(unsigned)argus_out(knowledge));
     const argus_mask_t sonars = members(self, knowledge, dark, in_use);
     const bool whole = sonars == in_use;

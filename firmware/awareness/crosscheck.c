@@ -76,7 +76,9 @@ bool argus_crosscheck_is_witness(const argus_evidence_t *const self, const argus
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const int32_t own = self->of[sonar].score[ARGUS_TEST_PEERS];
     const int32_t suspicious = argus_bounds[ARGUS_TEST_PEERS].naming * ARGUS_SUSPECT_PERCENT / 100;
-    return sonar != of && !argus_is_out(knowledge, sonar) && (self->off_scale >> sonar & 1u) == 0 &&
+    const bool alike =
+        argus_robot_is_sector(knowledge->robot, sonar) == argus_robot_is_sector(knowledge->robot, of);
+    return sonar != of && alike && !argus_is_out(knowledge, sonar) && (self->off_scale >> sonar & 1u) == 0 &&
            (own < suspicious || own < self->of[of].score[ARGUS_TEST_PEERS]);
 }
 
@@ -95,12 +97,20 @@ static bool is_mute(const argus_evidence_t *const self, const int sonar, const a
     return (self->mute >> sonar & 1u) != 0 && !argus_ping_is_echo(then);
 }
 
+// What one ping says of another; of two sectors that overlap the nearest may differ.
+static verdict_t answer(const argus_line_t *const line, const argus_ping_t *const then,
+                        const int32_t along_mm, const bool sector) {
+    const verdict_t said = compare(line->ping->reading_mm, then->reading_mm, along_mm);
+    return sector && argus_ping_is_echo(line->ping) && said == CONTRADICTED ? UNSEEN : said;
+}
+
 // One other sonar: its latest ping on the bearing decides. How far back that is, 0: it did not look there.
 static int ask(const argus_evidence_t *const self, tally_t *const tally, const argus_line_t *const line,
-               const int from, const uint32_t now_ms) {
+               const int from, const argus_knowledge_t *const knowledge) {
     ARGUS_ASSERT(from >= 0 && from < ARGUS_SONARS);
     const argus_pings_t *const pings = &self->pings[from];
     const argus_ping_t *const at = line->ping;
+    const bool sector = argus_robot_is_sector(knowledge->robot, from);
     int latest = 0;
     for (int back = argus_pings_near(pings, 1, line); back > 0;
          back = argus_pings_near(pings, back + 1, line)) {
@@ -109,12 +119,12 @@ static int ask(const argus_evidence_t *const self, tally_t *const tally, const a
         if (shift.lateral_mm > ARGUS_SAME_LATERAL_MM || is_mute(self, from, then)) {
             continue;
         }
-        const verdict_t said = compare(at->reading_mm, then->reading_mm, shift.along_mm);
+        const verdict_t said = answer(line, then, shift.along_mm, sector);
         if (latest == 0 && argus_ping_turned_cdeg(at, then) <= ARGUS_SAME_CDEG) {
             latest = back;
             add(tally, said, from, argus_ping_is_echo(then));
         }
-        const bool lately = argus_ping_age_ms(then, now_ms) <= ARGUS_BESIDE_MS;
+        const bool lately = argus_ping_age_ms(then, knowledge->sip_ms) <= ARGUS_BESIDE_MS;
         tally->excused = tally->excused || (lately && (said == AGREED || said == QUIET));
     }
     return latest;
@@ -128,7 +138,7 @@ static tally_t ask_all(const argus_evidence_t *const self, const argus_knowledge
     tally_t tally = {.agree = 0};
     for (int i = 0; i < knowledge->sonars; i++) {
         if (argus_crosscheck_is_witness(self, knowledge, i, sonar)) {
-            ask(self, &tally, &line, i, knowledge->sip_ms);
+            ask(self, &tally, &line, i, knowledge);
         }
     }
     return tally;
@@ -145,7 +155,7 @@ static verdict_t verdict_of(const tally_t *const tally) {
 }
 
 // From one place and on one bearing, one reading counts.
-static bool is_news(const argus_pings_t *const pings, const argus_ping_t *const now) {
+static bool is_news(const argus_pings_t *const pings, const argus_ping_t *const now, const int32_t place_mm) {
     for (int i = 1; i <= pings->count; i++) {
         const argus_ping_t *const then = argus_pings_at(pings, i);
         const int32_t apart_ms = (int16_t)(now->t_ms - then->t_ms);
@@ -153,7 +163,7 @@ static bool is_news(const argus_pings_t *const pings, const argus_ping_t *const 
             break;
         }
         if (then->counted && argus_abs(apart_ms) < ARGUS_PLACE_MS &&
-            argus_ping_is_within(now, then, ARGUS_PLACE_MM) &&
+            argus_ping_is_within(now, then, place_mm) &&
             argus_ping_turned_cdeg(now, then) < ARGUS_PLACE_CDEG) {
             return false;
         }
@@ -288,12 +298,14 @@ static bool may_ask(argus_evidence_t *const self) {
     return may;
 }
 
-// Every reading tells of a lag, a contradicted one no more than it tells at all.
+// A sector has no hypothesis of its own: a laser is late or turned as a whole. Every reading tells of a lag,
+// a contradicted one no more than it tells at all.
 static void weigh_lags(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                        const int sonar, const int back, const verdict_t verdict, const int32_t worth) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS && verdict < TELLING);
     const int32_t most = verdict == CONTRADICTED ? worth : ARGUS_CEILING;
-    for (int i = 0; i < ARGUS_LAGS; i++) {
+    const int lags = argus_robot_is_sector(knowledge->robot, sonar) ? 0 : ARGUS_LAGS;
+    for (int i = 0; i < lags; i++) {
         const bool asks = verdict == CONTRADICTED || self->of[sonar].hypothesis[i].over_healthy > 0;
         if (asks && may_ask(self)) {
             const verdict_t mapped = as_late(self, knowledge, sonar, back, i + ARGUS_LEAST_LAG);
@@ -309,7 +321,8 @@ static void weigh_offsets(argus_evidence_t *const self, const argus_knowledge_t 
                           const int sonar, const argus_ping_t *const at, const verdict_t verdict,
                           const int32_t increment) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    for (int i = 0; i < ARGUS_OFFSETS; i++) {
+    const int offsets = argus_robot_is_sector(knowledge->robot, sonar) ? 0 : ARGUS_OFFSETS;
+    for (int i = 0; i < offsets; i++) {
         const int hypothesis = ARGUS_LAGS + i;
         const bool idle = verdict == AGREED && self->of[sonar].hypothesis[hypothesis].over_healthy == 0;
         if (idle || !may_ask(self)) {
@@ -343,7 +356,7 @@ static void count_own(argus_evidence_t *const self, const argus_knowledge_t *con
     argus_ping_t *const at = argus_pings_mark(&self->pings[sonar], back);
     const argus_ping_t *const before = argus_pings_at(&self->pings[sonar], back + 1);
     if (argus_is_out(knowledge, sonar) && is_beyond(knowledge->sonar[sonar].kind, at, before, verdict) &&
-        is_since(knowledge, sonar, at) && is_news(&self->pings[sonar], at)) {
+        is_since(knowledge, sonar, at) && is_news(&self->pings[sonar], at, ARGUS_PLACE_MM)) {
         const int32_t adds = argus_odds_of(self, knowledge, sonar, ARGUS_TEST_PEERS, false);
         argus_score(self, sonar, ARGUS_TEST_PEERS, adds);
         c->agreed = argus_one_more(c->agreed);
@@ -371,6 +384,12 @@ static int32_t worth_as(const argus_evidence_t *const self, const argus_knowledg
     return verdict == AGREED ? worth_of(self, knowledge, sonar, false, 0) : 0;
 }
 
+// From one place one reading counts; less far apart where a laser contradicts.
+static int32_t place_of(const argus_knowledge_t *const knowledge, const tally_t *const tally) {
+    const bool scan = (tally->against & argus_robot_sectors(knowledge->robot)) != 0;
+    return scan ? ARGUS_SCAN_PLACE_MM : ARGUS_PLACE_MM;
+}
+
 static void weigh(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
                   const int back, const tally_t *const tally, const bool fresh) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
@@ -382,7 +401,7 @@ static void weigh(argus_evidence_t *const self, const argus_knowledge_t *const k
     count_own(self, knowledge, sonar, back, verdict);
     const bool tells = verdict == AGREED || verdict == CONTRADICTED;
     const int32_t worth = worth_as(self, knowledge, sonar, at, tally, verdict);
-    if (tells && is_news(&self->pings[sonar], at)) {
+    if (tells && is_news(&self->pings[sonar], at, place_of(knowledge, tally))) {
         count_news(self, knowledge, sonar, at, verdict, tally->against, worth);
     }
     if (fresh && verdict == AGREED &&
@@ -410,6 +429,85 @@ static void look_back(argus_evidence_t *const self, const argus_knowledge_t *con
     }
 }
 
+// A laser's scan as a witness of a sonar ------------------------------------------------------------------
+
+// The return of a sector: how far from the transducer, and how far aside of its axis.
+static argus_point_t seen_from(const argus_knowledge_t *const knowledge, const int sonar, const int sector) {
+    const argus_sonar_pose_t from = argus_robot_pose(knowledge->robot, sonar);
+    const argus_sonar_pose_t laser = argus_robot_pose(knowledge->robot, sector);
+    const int32_t mm = knowledge->sonar[sector].reading_mm;
+    const argus_point_t way = {
+        laser.x_mm - from.x_mm + mm * argus_cos(laser.heading_deg * 100) / ARGUS_TRIG_ONE,
+        laser.y_mm - from.y_mm + mm * argus_sin(laser.heading_deg * 100) / ARGUS_TRIG_ONE};
+    return argus_in_frame(way, from.heading_deg * 100);
+}
+
+static bool returns_now(const argus_knowledge_t *const knowledge, const int sector) {
+    return sector < knowledge->sonars && argus_robot_is_sector(knowledge->robot, sector) &&
+           (knowledge->fresh >> sector & 1u) != 0 && !argus_is_out(knowledge, sector) &&
+           knowledge->sonar[sector].reading_mm < ARGUS_NO_ECHO_MM;
+}
+
+// No sector beside it has something nearer: what it returns is the foot of a wall, or a thing that stands
+// out. A sonar hears that; what lies aslant it may not.
+static bool is_foot(const argus_knowledge_t *const knowledge, const int sector) {
+    const uint16_t mm = knowledge->sonar[sector].reading_mm;
+    for (int beside = sector - 1; beside <= sector + 1; beside += 2) {
+        const bool there =
+            beside >= 0 && beside < knowledge->sonars && argus_robot_is_sector(knowledge->robot, beside);
+        const int other =
+            there ? beside : 2 * sector - beside; // at the rim of the field a wall is nearly square
+        const int32_t least_mm =
+            there ? mm : knowledge->sonar[other].reading_mm - mm * ARGUS_SCAN_RIM_PERCENT / 100;
+        if (knowledge->sonar[other].reading_mm < mm || least_mm > mm) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// The nearest return within the cone, mm from the transducer, and its sector; -1: none.
+static int nearest_sector(const argus_knowledge_t *const knowledge, const int sonar, int32_t *const mm) {
+    const int32_t inner_deg = (knowledge->robot->cone_deg - knowledge->robot->sector_deg) / 2 + 1;
+    const int32_t tangent = ARGUS_TRIG_ONE * argus_sin(inner_deg * 100) / argus_cos(inner_deg * 100);
+    int nearest = -1;
+    for (int i = 0; i < knowledge->sonars; i++) {
+        if (returns_now(knowledge, i)) {
+            const argus_point_t at = seen_from(knowledge, sonar, i);
+            const int32_t far_mm = argus_hypot(at.x_mm, at.y_mm);
+            const bool within = at.x_mm > 0 && argus_abs(at.y_mm) <= at.x_mm * tangent / ARGUS_TRIG_ONE;
+            if (within && (nearest < 0 || far_mm < *mm)) {
+                nearest = i;
+                *mm = far_mm;
+            }
+        }
+    }
+    return nearest;
+}
+
+// What it returns a sonar hears, or something nearer: that may be below the plane of the scan. So a laser
+// never contradicts what is nearer, and where it returns nothing it says nothing. A scan is many rays: it
+// counts for two.
+static void ask_laser(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
+                      const int sonar, const argus_ping_t *const now, tally_t *const tally) {
+    int32_t mm = 0;
+    (void)self;
+    if (argus_robot_sectors(knowledge->robot) == 0 || argus_robot_is_sector(knowledge->robot, sonar)) {
+        return;
+    }
+    const int sector = nearest_sector(knowledge, sonar, &mm);
+    if (sector < 0 || mm < ARGUS_NEAREST_MM || mm > ARGUS_SURE_MM || !is_foot(knowledge, sector)) {
+        return;
+    }
+    const int32_t limit_mm = ARGUS_AGREE_MM + mm * ARGUS_AGREE_PERCENT / 100;
+    if (now->reading_mm > mm + limit_mm) {
+        add(tally, CONTRADICTED, sector, true);
+        tally->against |= (argus_mask_t)(1u << (sector + 1));
+    } else if (now->reading_mm >= mm - limit_mm) {
+        add(tally, AGREED, sector, true);
+    }
+}
+
 void argus_crosscheck_take(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                            const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
@@ -422,9 +520,10 @@ void argus_crosscheck_take(argus_evidence_t *const self, const argus_knowledge_t
         tally_t unheard = {.agree = 0};
         const bool witness = argus_crosscheck_is_witness(self, knowledge, i, sonar);
         if (i != sonar) {
-            latest[i] = (uint8_t)ask(self, witness ? &tally : &unheard, &line, i, knowledge->sip_ms);
+            latest[i] = (uint8_t)ask(self, witness ? &tally : &unheard, &line, i, knowledge);
         }
     }
+    ask_laser(self, knowledge, sonar, now, &tally);
     weigh(self, knowledge, sonar, 1, &tally, true);
     look_back(self, knowledge, sonar, latest);
 }

@@ -14,6 +14,55 @@
 #include "awareness/scale.h"
 #include "knowledge/angle.h"
 
+#if ARGUS_LASER
+static void restart_laser(argus_evidence_t *const self) {
+    self->laser.count = 0;
+}
+
+// An operator's re-test of a sector is one of the laser.
+static void forget_laser(argus_evidence_t *const self, const int sonar) {
+    if ((self->laser.sectors >> sonar & 1u) != 0) {
+        memset(&self->laser, 0, sizeof self->laser);
+    }
+}
+
+static void take_laser(argus_evidence_t *const self, const argus_knowledge_t *const knowledge) {
+    argus_laser_sip(&self->laser, knowledge);
+}
+
+argus_fault_kind_t argus_evidence_laser(const argus_evidence_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    const bool sector = (self->laser.sectors >> sonar & 1u) != 0;
+    return sector ? argus_laser_kind(&self->laser) : ARGUS_KIND_NONE;
+}
+
+int32_t argus_evidence_laser_news(const argus_evidence_t *const self) {
+    return self->laser.news ? self->laser.fault : 0;
+}
+#else
+static void restart_laser(argus_evidence_t *const self) {
+    (void)self;
+}
+
+static void forget_laser(argus_evidence_t *const self, const int sonar) {
+    (void)self, (void)sonar;
+}
+
+static void take_laser(argus_evidence_t *const self, const argus_knowledge_t *const knowledge) {
+    (void)self, (void)knowledge;
+}
+
+argus_fault_kind_t argus_evidence_laser(const argus_evidence_t *const self, const int sonar) {
+    (void)self, (void)sonar;
+    return ARGUS_KIND_NONE;
+}
+
+int32_t argus_evidence_laser_news(const argus_evidence_t *const self) {
+    (void)self;
+    return 0;
+}
+#endif
+
 void argus_evidence_init(argus_evidence_t *const self) {
     memset(self, 0, sizeof *self);
     self->caution = 100;
@@ -29,6 +78,7 @@ void argus_evidence_forget(argus_evidence_t *const self, const int sonar) {
     self->deaf[sonar] = (argus_rate_t){.all = 0};
     self->deaf_waits[sonar] = 0;
     memset(&self->pings[sonar], 0, sizeof self->pings[sonar]);
+    forget_laser(self, sonar);
     for (int i = 0; i < ARGUS_SONARS; i++) {
         self->of[i].against &= (argus_mask_t) ~(1u << sonar);
     }
@@ -38,6 +88,7 @@ void argus_evidence_restart(argus_evidence_t *const self) {
     self->straight_sips = 0;
     self->before_ms = 0;
     memset(self->pings, 0, sizeof self->pings);
+    restart_laser(self);
 }
 
 // Where the robot was when the pings of this SIP were sent, about: between its two last poses.
@@ -72,14 +123,17 @@ static void take(argus_evidence_t *const self, const argus_knowledge_t *const kn
                  const argus_pose_t *const pose, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     argus_case_t *const c = &self->of[sonar];
-    if (knowledge->lists_all && knowledge->sip_ms - c->counted_ms < ARGUS_REFRESH_MS) {
+    const bool sector = argus_robot_is_sector(knowledge->robot, sonar);
+    if ((sector || knowledge->lists_all) && knowledge->sip_ms - c->counted_ms < ARGUS_REFRESH_MS) {
         return;
     }
     c->counted_ms = knowledge->sip_ms;
     c->out = argus_is_out(knowledge, sonar);
     const argus_ping_t now = ray_of(self, knowledge, pose, sonar);
     argus_own_take(self, knowledge, sonar, &now);
-    argus_scale_take(self, knowledge, sonar, &now);
+    if (!sector) {
+        argus_scale_take(self, knowledge, sonar, &now);
+    }
     c->last_mm = now.reading_mm;
     argus_pings_note(&self->pings[sonar], now);
     argus_crosscheck_take(self, knowledge, sonar);
@@ -113,6 +167,7 @@ void argus_evidence_sip(argus_evidence_t *const self, const argus_knowledge_t *c
             take(self, knowledge, &pose, i);
         }
     }
+    take_laser(self, knowledge);
     argus_clutter_sip(self, knowledge);
     self->before = knowledge->pose;
     self->before_ms = knowledge->sip_ms;

@@ -63,6 +63,12 @@ void argus_evidence_agree_anew(argus_evidence_t *self, int sonar);
 bool argus_evidence_repeats(const argus_evidence_t *self, int sonar);
 bool argus_evidence_shows_gaps(const argus_evidence_t *self, int sonar);
 
+// What a laser's scan is off for as a whole, where this is a sector of it; NONE: it is sound, or a sonar.
+argus_fault_kind_t argus_evidence_laser(const argus_evidence_t *self, int sonar);
+
+// Found in this SIP of a laser's scan as a whole: an argus_scan_fault_t, 0: nothing.
+int32_t argus_evidence_laser_news(const argus_evidence_t *self);
+
 // Readings in a row without an echo; how much the others contradict it, hundredths of a nat.
 uint8_t argus_evidence_silent_run(const argus_evidence_t *self, int sonar);
 int32_t argus_evidence_contradicted(const argus_evidence_t *self, int sonar);

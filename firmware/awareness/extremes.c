@@ -167,7 +167,7 @@ static void take(argus_extreme_t *const self, const argus_knowledge_t *const kno
 void argus_extremes_sip(argus_extremes_t *const self, const argus_knowledge_t *const knowledge) {
     ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     for (int i = 0; i < knowledge->sonars; i++) {
-        if ((knowledge->fresh >> i & 1u) != 0) {
+        if ((knowledge->fresh >> i & 1u) != 0 && !argus_robot_is_sector(knowledge->robot, i)) {
             take(&self->of[i], knowledge, i);
         }
     }

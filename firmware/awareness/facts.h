@@ -3,6 +3,7 @@
 #ifndef ARGUS_FACTS_H
 #define ARGUS_FACTS_H
 
+#include "awareness/laser.h"
 #include "awareness/numbers.h"
 #include "awareness/pings.h"
 
@@ -91,6 +92,9 @@ typedef struct {
     uint8_t deaf_waits[ARGUS_SONARS]; // its silences since an echo of it was borne out last: it may be dead
     argus_mask_t off_scale;           // ranges do not change as the way does: no witnesses
     argus_pings_t pings[ARGUS_SONARS];
+#if ARGUS_LASER
+    argus_laser_t laser;
+#endif
 } argus_evidence_t;
 
 // Adds to a test's score, by caution and within its bounds; more of what speaks for a sonar that is out.

@@ -46,6 +46,7 @@
 // Independence: one place and one moment are one piece of evidence
 #define ARGUS_INDEPENDENCE_TABLE(X) \
     X(PLACE_MM, 200, "mm", measured, "readings from places this far apart count anew", "60 mm: half as many false names again") \
+    X(SCAN_PLACE_MM, 80, "mm", reasoned, "... where a laser contradicts: its scan is of now", "not ablated") \
     X(PLACE_CDEG, 800, "cdeg", measured, "... on bearings this far apart", "5 degrees: likewise") \
     X(PLACE_MS, 4000, "ms", reasoned, "... or after this time", "not ablated") \
     X(EPISODE_MS, 6000, "ms", reasoned, "contradictions further apart are two episodes", "not ablated") \
@@ -156,6 +157,38 @@
     X(SCALE_OFF_RUN, 4, "measures", reasoned, "in a row that are off to one side: what is slant or round is short, too", "without the rule: false disables 0 -> 7 of 12 missions") \
     X(SCALE_LEAST_OFF, 2, "sonars", reasoned, "of an array, before it is taken for off as a whole", "not ablated")
 
+// The scan of a laser as a whole
+#define ARGUS_LASER_TABLE(X) \
+    X(SCANS, 32, "readings", size, "of all sectors that are remembered: some 3 s", "not ablated") \
+    X(SCAN_LAGS, 5, "hypotheses", size, "of a laser's lag", "not ablated") \
+    X(SCAN_WALLS, 6, "-", size, "walls that are followed at a time", "not ablated") \
+    X(SCAN_SAME_MS, 800, "ms", reasoned, "in which no sector of a scan changes while the robot moves: frozen", "not ablated") \
+    X(SCAN_SAME_MM, 100, "mm", reasoned, "... so far", "not ablated") \
+    X(SCAN_SAME_CDEG, 1000, "cdeg", reasoned, "... or turns by so much", "not ablated") \
+    X(SCAN_DARK_MS, 1000, "ms", reasoned, "without a return in any sector, right after half of them had near ones: dark", "not ablated") \
+    X(SCAN_CUT_WAY_MM, 3000, "mm", reasoned, "of way in which returns end at one range: cut", "not ablated") \
+    X(SCAN_CUT_EDGES, 10, "-", reasoned, "... so often", "not ablated") \
+    X(SCAN_CUT_TIMES, 4, "times", reasoned, "... as often as anywhere nearer", "not ablated") \
+    X(SCAN_CUT_PERCENT, 85, "%", reasoned, "of the farthest return: from here on a return ends there", "not ablated") \
+    X(SCAN_CUT_MOST_MM, 4000, "mm", reasoned, "a return from beyond: nothing is cut", "not ablated") \
+    X(SCAN_WALL_LEAST_MM, 300, "mm", reasoned, "a wall that is nearer is no measure", "not ablated") \
+    X(SCAN_WALL_LEAP_MM, 150, "mm", reasoned, "of a wall's range from scan to scan", "not ablated") \
+    X(SCAN_WALL_MISSED, 3, "readings", reasoned, "in a row do not show it: it is lost", "not ablated") \
+    X(SCAN_DROPPED_PERCENT, 40, "%", reasoned, "of the way: what is farther off the way is no wall that stands", "not ablated") \
+    X(SCAN_STRETCH_MM, 300, "mm", reasoned, "of way makes a measure of a wall's range", "not ablated") \
+    X(SCAN_BENT_CDEG, 1000, "cdeg", reasoned, "... whose foot is seen on one bearing, to within this", "not ablated") \
+    X(SCAN_MEASURES, 3, "measures", reasoned, "of a stretch each, along the way for the scale, across it for the axis", "not ablated") \
+    X(SCAN_KEEPS_SIXTEENTHS, 15, "-", reasoned, "sixteenths of the measures so far are kept with one more", "not ablated") \
+    X(SCAN_TURNED_PERMILLE, 100, "permille", reasoned, "sine of the angle by which its axis is off: turned", "not ablated") \
+    X(SCAN_SCALED_PERMILLE, 60, "permille", reasoned, "ranges change by so much more or less than the way: scaled", "not ablated") \
+    X(RADIAN_CDEG, 5730, "cdeg", reasoned, "a radian, rounded", "not ablated") \
+    X(SCAN_SLOT_MS, 100, "ms", reasoned, "from one scan to the next, about", "not ablated") \
+    X(SCAN_RIM_PERCENT, 4, "%", reasoned, "by so much more the next sector may read at the rim of the field, of a wall that is square to it", "not ablated") \
+    X(SCAN_LATE_STEP_MS, 500, "ms", reasoned, "from one lag that is tried to the next", "not ablated") \
+    X(SCAN_LATE_SCANS, 15, "readings", reasoned, "in turns that tell a lag from none", "not ablated") \
+    X(SCAN_LATE_PERCENT, 150, "%", reasoned, "of the misfit with the lag, without it: late", "not ablated") \
+    X(SCAN_MISFIT_MM, 1000, "mm", reasoned, "the most that one sector misfits", "not ablated")
+
 // Alarms
 #define ARGUS_ALARMS_TABLE(X) \
     X(MOVING_MM_S, 5, "mm/s", reasoned, "faster, the robot moves ahead or back", "not ablated")
@@ -173,6 +206,7 @@
     ARGUS_RANGE_LIMITS_TABLE(X) \
     ARGUS_OUTAGE_OF_AN_ARRAY_TABLE(X) \
     ARGUS_RANGES_AGAINST_THE_ODOMETRY_TABLE(X) \
+    ARGUS_LASER_TABLE(X) \
     ARGUS_ALARMS_TABLE(X)
 
 // Each test of a sonar: permille of the readings that are odd of a healthy sonar at the least, odd of a faulty one, and

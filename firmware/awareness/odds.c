@@ -41,7 +41,12 @@ static int32_t permille_but(const argus_evidence_t *const self, const argus_know
 
 int32_t argus_odds_permille(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                             const int but, const argus_test_t test) {
-    return permille_but(self, knowledge, but < 0 ? 0 : (argus_mask_t)(1u << but), test);
+    if (but < 0) {
+        return permille_but(self, knowledge, 0, test);
+    }
+    const argus_mask_t sectors = argus_robot_sectors(knowledge->robot);
+    const argus_mask_t others = (argus_mask_t)((sectors >> but & 1u) != 0 ? ~(unsigned)sectors : sectors);
+    return permille_but(self, knowledge, (argus_mask_t)(others | 1u << but), test);
 }
 
 // Odd readings of a sonar beyond those that a healthy one has.
@@ -51,7 +56,8 @@ static int32_t excess_of(const argus_rate_t *const rate, const argus_test_t test
 
 int32_t argus_odds_common_permille(const argus_evidence_t *const self,
                                    const argus_knowledge_t *const knowledge, const argus_test_t test) {
-    argus_mask_t left = 0;
+    const argus_mask_t sectors = argus_robot_sectors(knowledge->robot);
+    argus_mask_t left = sectors == argus_robot_all(knowledge->robot) ? (argus_mask_t)0 : sectors;
     for (int n = 0; n < ARGUS_RATE_OUTLIERS; n++) {
         int worst = -1;
         for (int i = 0; i < knowledge->sonars; i++) {

@@ -219,6 +219,9 @@ static void run_tests(argus_evidence_t *const self, const argus_knowledge_t *con
     argus_case_t *const c = &self->of[sonar];
     const bool unrest = argus_clutter_beside(self, knowledge, sonar, ARGUS_UNREST_MS);
     test_stuck(self, knowledge, sonar, now, before);
+    if (argus_robot_is_sector(knowledge->robot, sonar)) {
+        return; // the nearest in a sector leaps where things enter it
+    }
     argus_lag_take(self, knowledge, sonar, now);
     test_walker(self, knowledge, sonar, now, before);
     if (knowledge->odometer_mm - c->place_odometer_mm >= ARGUS_SAME_ALONG_MM) {

@@ -72,7 +72,8 @@ static int32_t on_way_mm(const argus_robot_t *const robot, const int sonar, cons
     const argus_sonar_pose_t pose = argus_robot_pose(robot, sonar);
     int32_t nearest_mm = INT32_MAX;
     for (int k = -CONE_PLACES; k <= CONE_PLACES; k++) {
-        const int32_t bearing = pose.heading_deg * 100 + robot->cone_deg * 100 * k / (2 * CONE_PLACES);
+        const int32_t bearing =
+            pose.heading_deg * 100 + argus_robot_cone_deg(robot, sonar) * 100 * k / (2 * CONE_PLACES);
         const int32_t x_mm = pose.x_mm + reading_mm * argus_cos(bearing) / ARGUS_TRIG_ONE;
         const int32_t y_mm = pose.y_mm + reading_mm * argus_sin(bearing) / ARGUS_TRIG_ONE;
         const int32_t free_mm = way->rear ? -x_mm - robot->rear_mm : x_mm - robot->front_mm;

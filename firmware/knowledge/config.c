@@ -127,7 +127,7 @@ static int32_t edge_of(int32_t ahead2, int32_t cdeg) {
 
 static view_t view_of(const argus_robot_t *robot, int sonar, int32_t front2) {
     const argus_sonar_pose_t pose = argus_robot_pose(robot, sonar);
-    const int32_t half_cdeg = robot->cone_deg * 100 / 2;
+    const int32_t half_cdeg = argus_robot_cone_deg(robot, sonar) * 100 / 2;
     view_t view = {.ahead2 = front2 - 2 * pose.x_mm, .across2 = 2 * pose.y_mm};
     view.from2 = view.across2 + edge_of(view.ahead2, pose.heading_deg * 100 - half_cdeg);
     view.to2 = view.across2 + edge_of(view.ahead2, pose.heading_deg * 100 + half_cdeg);

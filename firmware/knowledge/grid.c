@@ -224,7 +224,7 @@ static void hear(argus_grid_t *const self, const argus_knowledge_t *const knowle
     const argus_point_t echo = along(axis, reading_mm);
     const argus_cell_t cell = argus_grid_cell(echo);
     if (argus_grid_is_occupied(self, cell) ||
-        !is_explained(self, axis, reading_mm, knowledge->robot->cone_deg * 50)) {
+        !is_explained(self, axis, reading_mm, argus_robot_cone_deg(knowledge->robot, sonar) * 50)) {
         rise(self, cell, near ? NEAR_RISE : FAR_RISE, near ? HEARD_MOST : FAR_MOST);
     }
     if ((argus_robot_flank(knowledge->robot) >> sonar & 1u) != 0 && reading_mm <= BESIDE_MM) {

@@ -13,6 +13,7 @@
 #define LAST_ASTERN_DEG 140 // who looks farther astern than this sees what the robot backs into head-on
 #define ONE 30              // figures of sine and cosine have so many binary places
 #define DEG_IN_RAD 18740330 // pi / 180
+#define AHEAD_MOST_DEG 55   // a sector so far off ahead sees what the robot drives into
 #define SERIES 6            // terms of a cosine: the next one is below the last place
 
 _Static_assert(ARGUS_FORWARD_SONARS == ARGUS_FORWARD_MAX, "a ring has as many forward sonars as a plan");
@@ -123,20 +124,64 @@ static argus_ring_fault_t fault_of(const argus_ring_t *const ring, const int son
     if (mount->role > ARGUS_ROLE_ABEAM) {
         return ARGUS_RING_ROLE;
     }
-    return is_alike(ring, sonar) ? ARGUS_RING_ALIKE : ARGUS_RING_OK;
+    return sonar < ring->sonars - figures[ROW_sectors] && is_alike(ring, sonar) ? ARGUS_RING_ALIKE
+                                                                                : ARGUS_RING_OK;
 }
 
 static argus_ring_report_t check_sonars(const argus_ring_t *const ring, const int32_t figures[ROWS]) {
-    if (ring->sonars == 0 || ring->sonars > ARGUS_SONARS) {
-        return report(ARGUS_RING_SONARS, -1, -1);
-    }
     for (int i = 0; i < ring->sonars; i++) {
         const argus_ring_fault_t fault = fault_of(ring, i, figures);
         if (fault != ARGUS_RING_OK) {
-            return report(fault, -1, i);
+            const bool laser = i >= ring->sonars - figures[ROW_sectors];
+            return laser ? report(fault, ROW_ahead_mm, -1) : report(fault, -1, i);
         }
     }
     return report(ARGUS_RING_OK, -1, -1);
+}
+
+// Sectors of a laser's scan --------------------------------------------------------------------------------
+
+static bool is_managed(const int32_t sonars, const int32_t sectors) {
+    return sonars + sectors > 0 && sonars + sectors <= ARGUS_SONARS &&
+           (sectors == 0 || ARGUS_SONARS > 16); // a laser is for hosts
+}
+
+// Sonars fill whole arrays of eight before them: no array has both.
+static argus_ring_report_t check_sectors(const argus_ring_t *const ring, const int32_t figures[ROWS]) {
+    const int32_t sectors = figures[ROW_sectors];
+    if (!is_managed(ring->sonars, sectors)) {
+        return report(ARGUS_RING_SONARS, sectors > 0 ? ROW_sectors : -1, -1);
+    }
+    if (sectors > 0 && ring->sonars % ARCOS_TIMING_TRANSDUCERS_PER_ARRAY != 0) {
+        return report(ARGUS_RING_SECTORS, ROW_sectors, -1);
+    }
+    const bool whole = sectors == 0 || figures[ROW_field_deg] % sectors == 0;
+    return report(whole ? ARGUS_RING_OK : ARGUS_RING_SECTORS, whole ? -1 : ROW_field_deg, -1);
+}
+
+static uint8_t role_of(const int32_t heading_deg) {
+    if (argus_abs(heading_deg) <= AHEAD_MOST_DEG) {
+        return ARGUS_ROLE_AHEAD;
+    }
+    return argus_abs(heading_deg) >= HALF_TURN_DEG - AHEAD_MOST_DEG ? ARGUS_ROLE_ASTERN : ARGUS_ROLE_ABEAM;
+}
+
+// All sensors: the sonars, then the sectors, left to right.
+static void take_mounts(argus_sonar_mount_t mounts[ARGUS_SONARS], const argus_ring_t *const ring,
+                        const int32_t figures[ROWS]) {
+    ARGUS_ASSERT(ring->sonars + figures[ROW_sectors] <= ARGUS_SONARS);
+    for (int i = 0; i < ring->sonars; i++) {
+        mounts[i] = ring->mounts[i];
+    }
+    const bool guards = figures[ROW_guards] != 0 || ring->sonars == 0;
+    for (int k = 0; k < figures[ROW_sectors]; k++) {
+        const int32_t width = figures[ROW_field_deg] / figures[ROW_sectors];
+        const int32_t turned = figures[ROW_facing_deg] + (figures[ROW_field_deg] - width) / 2 - k * width;
+        const int32_t heading = (turned + TURN_DEG + HALF_TURN_DEG - 1) % TURN_DEG - HALF_TURN_DEG + 1;
+        mounts[ring->sonars + k] =
+            (argus_sonar_mount_t){(int16_t)figures[ROW_ahead_mm], (int16_t)figures[ROW_aside_mm],
+                                  (int16_t)heading, guards ? role_of(heading) : ARGUS_ROLE_NONE};
+    }
 }
 
 // Those that face forward ----------------------------------------------------------------------------------
@@ -146,20 +191,24 @@ static int32_t bearing_of(const argus_ring_t *const ring, const int rank) {
 }
 
 // Turns that put any sonar onto the bearing of one that faces forward.
-static int turns_of(const argus_ring_t *const ring) {
+static int turns_of(const argus_ring_t *const ring, const int32_t sectors) {
     uint32_t seen[(TURN_DEG + 31) / 32] = {0};
     int count = 0;
     for (int i = 0; i < ring->forward_count * ring->sonars; i++) {
         const int32_t by = bearing_of(ring, i / ring->sonars) - ring->mounts[i % ring->sonars].heading_deg;
         const int32_t turn = (by + TURN_DEG) % TURN_DEG;
         const uint32_t bit = UINT32_C(1) << turn % 32;
+        if (i % ring->sonars >= ring->sonars - sectors &&
+            ring->mounts[i % ring->sonars].role == ARGUS_ROLE_NONE) {
+            continue; // it covers for none
+        }
         count += turn != 0 && (seen[turn / 32] & bit) == 0;
         seen[turn / 32] |= bit;
     }
     return count;
 }
 
-static argus_ring_report_t check_forward(const argus_ring_t *const ring) {
+static argus_ring_report_t check_forward(const argus_ring_t *const ring, const int32_t sectors) {
     if (ring->forward_count < 2 || ring->forward_count > ARGUS_FORWARD_MAX) {
         return report(ARGUS_RING_FORWARD, -1, -1);
     }
@@ -173,7 +222,7 @@ static argus_ring_report_t check_forward(const argus_ring_t *const ring) {
             return report(ARGUS_RING_ORDER, -1, sonar);
         }
     }
-    return report(turns_of(ring) > ARGUS_TURNS_MAX ? ARGUS_RING_TURNS : ARGUS_RING_OK, -1, -1);
+    return report(turns_of(ring, sectors) > ARGUS_TURNS_MAX ? ARGUS_RING_TURNS : ARGUS_RING_OK, -1, -1);
 }
 
 // The row --------------------------------------------------------------------------------------------------
@@ -277,6 +326,10 @@ static void make_built(argus_own_robot_t *const own, const argus_ring_t *const r
     row->no_echo_mm = (int16_t)figures[ROW_no_echo_mm];
     row->cone_deg = (int16_t)figures[ROW_cone_deg];
     row->cycle_ms = (int16_t)figures[ROW_cycle_ms];
+    row->sector_deg = (int16_t)(figures[ROW_sectors] > 0 ? figures[ROW_field_deg] / figures[ROW_sectors] : 0);
+    for (int i = ring->sonars - figures[ROW_sectors]; i < ring->sonars; i++) {
+        row->sector_mask = (argus_mask_t)(row->sector_mask | 1u << i);
+    }
     take_masks(row, ring);
     take_spacing(row, ring);
     row->rear_overhang_mm = rear_overhang_mm(ring, row->rear_mm);
@@ -344,40 +397,55 @@ static bool is_name(const char *const name) {
     return length > 0 && length < ARGUS_ROBOT_NAME_MAX;
 }
 
-static argus_ring_report_t check(const argus_ring_t *const ring, int32_t figures[ROWS]) {
+static argus_ring_report_t check(const argus_ring_t *const ring, const int32_t figures[ROWS]) {
+    argus_ring_report_t found = check_sonars(ring, figures);
+    if (found.fault == ARGUS_RING_OK) {
+        found = check_forward(ring, figures[ROW_sectors]);
+    }
+    return found;
+}
+
+// `whole`: the ring with the sectors of its laser, whose mounts are in `mounts`.
+static argus_ring_report_t make_whole(argus_ring_t *const whole, argus_sonar_mount_t mounts[ARGUS_SONARS],
+                                      const argus_ring_t *const ring, int32_t figures[ROWS]) {
+    take_figures(ring, figures);
     if (!is_name(ring->name)) {
         return report(ARGUS_RING_NAME, -1, -1);
     }
     argus_ring_report_t found = check_figures(figures);
     if (found.fault == ARGUS_RING_OK) {
-        found = check_sonars(ring, figures);
+        found = check_sectors(ring, figures);
     }
     if (found.fault == ARGUS_RING_OK) {
-        found = check_forward(ring);
+        take_mounts(mounts, ring, figures);
+        *whole = *ring;
+        whole->mounts = mounts;
+        whole->sonars = (uint8_t)(ring->sonars + figures[ROW_sectors]);
+        found = check(whole, figures);
     }
     return found;
 }
 
 argus_ring_report_t argus_robot_make(argus_own_robot_t *const own, const argus_ring_t *const ring) {
     int32_t figures[ROWS];
-    take_figures(ring, figures);
-    const argus_ring_report_t found = check(ring, figures);
+    argus_sonar_mount_t mounts[ARGUS_SONARS];
+    argus_ring_t whole;
+    const argus_ring_report_t found = make_whole(&whole, mounts, ring, figures);
     if (found.fault != ARGUS_RING_OK) {
         return found;
     }
-    work_out_figures(ring, figures);
+    work_out_figures(&whole, figures);
     if (!can_swing(figures)) {
         return report(ARGUS_RING_SWING, ROW_swing_radius_mm, -1);
     }
     memset(own, 0, sizeof *own);
-    make_built(own, ring, figures);
-    for (int i = 0; i < ring->sonars; i++) {
-        const argus_sonar_mount_t *const mount = &ring->mounts[i];
-        own->poses[i] = (argus_sonar_pose_t){mount->x_mm, mount->y_mm, mount->heading_deg};
+    make_built(own, &whole, figures);
+    for (int i = 0; i < whole.sonars; i++) {
+        own->poses[i] = (argus_sonar_pose_t){mounts[i].x_mm, mounts[i].y_mm, mounts[i].heading_deg};
     }
-    if (make_turned(own, ring)) {
+    if (make_turned(own, &whole)) {
         own->rows[0].other = 1;
-        turn_overhang(own, ring);
+        turn_overhang(own, &whole);
     }
     return found;
 }

@@ -163,6 +163,22 @@ bool argus_robot_looks_ahead(const argus_robot_t *const self, const int sonar) {
     return (argus_robot_ahead(self) >> sonar & 1u) != 0;
 }
 
+// A sector without a role sees at one height only.
+argus_mask_t argus_robot_looking(const argus_robot_t *const self) {
+    const unsigned guard = (unsigned)self->ahead_mask | (unsigned)self->astern_mask |
+                           (unsigned)self->flank_mask | (unsigned)self->rear_flank_mask;
+    return (argus_mask_t)(argus_robot_all(self) & ~((unsigned)self->sector_mask & ~guard));
+}
+
+argus_mask_t argus_robot_sectors(const argus_robot_t *const self) {
+    return self->sector_mask;
+}
+
+int32_t argus_robot_cone_deg(const argus_robot_t *const self, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    return (self->sector_mask >> sonar & 1u) != 0 ? self->sector_deg : self->cone_deg;
+}
+
 int32_t argus_robot_half_width_mm(const argus_robot_t *const self) {
     return (self->width_mm + 1) / 2;
 }

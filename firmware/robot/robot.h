@@ -55,9 +55,17 @@ argus_mask_t argus_robot_astern(const argus_robot_t *self);
 argus_mask_t argus_robot_flank(const argus_robot_t *self);
 argus_mask_t argus_robot_rear_flank(const argus_robot_t *self);
 argus_mask_t argus_robot_array(const argus_robot_t *self, int array);
-argus_mask_t argus_robot_polled(const argus_robot_t *self); // all of the arrays of those that face forward
+argus_mask_t argus_robot_polled(const argus_robot_t *self);  // all of the arrays of those that face forward
+argus_mask_t argus_robot_looking(const argus_robot_t *self); // that may cover for others
+argus_mask_t argus_robot_sectors(const argus_robot_t *self); // of a laser's scan
+static inline bool argus_robot_is_sector(const argus_robot_t *const self, const int sonar) {
+    return (self->sector_mask >> sonar & 1u) != 0;
+}
 bool argus_robot_faces_forward(const argus_robot_t *self, int sonar);
 bool argus_robot_looks_ahead(const argus_robot_t *self, int sonar); // it, or one of another deck
+
+// That a sonar sees, or a sector of a laser's scan.
+int32_t argus_robot_cone_deg(const argus_robot_t *self, int sonar);
 
 // Half of its width, mm, rounded up.
 int32_t argus_robot_half_width_mm(const argus_robot_t *self);

@@ -35,6 +35,8 @@ struct argus_robot {
     argus_mask_t astern_mask;
     argus_mask_t flank_mask;      // those that look abeam from ahead of the centre
     argus_mask_t rear_flank_mask; // ... from behind it
+    argus_mask_t sector_mask;     // those that are sectors of a laser's scan
+    int16_t sector_deg;           // ... so wide each
     int16_t front_mm;             // from the centre of rotation to the ends of the body
     int16_t rear_mm;
     int16_t width_mm;

@@ -211,6 +211,10 @@ static void take_evidence(argus_t *const self) {
         argus_extremes_sip(&self->extremes, &self->knowledge);
         argus_common_sip(&self->common, &self->knowledge);
         argus_common_weigh(&self->common, &self->evidence, &self->knowledge);
+        const int32_t laser = argus_evidence_laser_news(&self->evidence);
+        if (laser != 0) {
+            argus_emit(&self->events, ARGUS_EV_LASER_FAULT, laser);
+        }
     }
     take_slip(&self->slip, &self->knowledge);
     take_bend(self, &self->bend, &self->wheel, &self->events);

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from hil_sim.bench import cli_passive, journey_cli, plan, pool, quick
+from hil_sim.bench import cli_passive, journey_cli, lasers, plan, pool, quick
 from hil_sim.bench.arguments import (
     EXIT_FAILED,
     EXIT_INTERRUPTED,
@@ -205,6 +205,7 @@ def main(argv: Sequence[str]) -> int:
         "drive-by": cli_passive.drive_by,
         "ablate": cli_passive.ablate,
         "likelihoods": cli_passive.likelihoods,
+        "laser": lasers.main,
     }
     if not argv or argv[0] not in names:
         if argv and argv[0] in ("-h", "--help"):

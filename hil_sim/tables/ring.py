@@ -29,6 +29,17 @@ _ARRAY: Final = ("index", "place", "order")
 _LAST_ASTERN_DEG: Final = 140
 _NAME_MOST: Final = 15
 _CORNERS: Final = "corners_mm"
+_LASER: Final = "laser"
+_LASER_KEYS: Final = {
+    "sectors": 0,
+    "field_deg": 180,
+    "facing_deg": 0,
+    "ahead_mm": 0,
+    "aside_mm": 0,
+    "guards": 0,
+}
+"""With what stands for one that is left out or 0: as in argus/argus.h."""
+_AHEAD_MOST_DEG: Final = 55
 _UNITS: Final = ("_mm", "_deg", "_um", "_ms", "_mm_s", "_mm_s2", "_deg_s", "_deg_s2", "_bumpers")
 _INT16: Final = range(-32768, 32768)
 
@@ -116,7 +127,8 @@ def _parsed(path: Path, name: str, texts: dict[str, str]) -> dict[str, Any]:
 
 def _known() -> dict[str, set[str]]:
     like = load(f"robots/{_LIKE}")
-    return {section: set(values) for section, values in like.items() if isinstance(values, dict)}
+    known = {section: set(values) for section, values in like.items() if isinstance(values, dict)}
+    return known | {_LASER: set(_LASER_KEYS)}
 
 
 def _check_keys(table: dict[str, Any], lines: Lines) -> None:
@@ -130,7 +142,7 @@ def _check_keys(table: dict[str, Any], lines: Lines) -> None:
             if key not in known[section]:
                 where = lines.where(section, key)
                 raise SimError(f"{where}: [{section}] {key}: no such key{_meant(key, known[section])}")
-            if key.endswith(_UNITS) and key != _CORNERS and not _is_whole(value):
+            if (key.endswith(_UNITS) or section == _LASER) and key != _CORNERS and not _is_whole(value):
                 raise SimError(f"{lines.where(section, key)}: [{section}] {key} must be a whole number")
 
 
@@ -143,8 +155,10 @@ def _is_whole(value: object) -> bool:
     return isinstance(value, int) and not isinstance(value, bool) and value in _INT16
 
 
-def _poses(sonar: dict[str, Any], lines: Lines) -> list[dict[str, Any]]:
-    poses = sonar.get("pose")
+def _poses(sonar: dict[str, Any], lines: Lines, has_laser: bool) -> list[dict[str, Any]]:
+    poses = sonar.get("pose", [] if has_laser else None)
+    if poses == [] and has_laser:
+        return []
     if not isinstance(poses, list) or not poses or not all(isinstance(pose, dict) for pose in poses):
         raise SimError(f"{lines.where('sonar', 'pose')}: no [[sonar.pose]]: give one for each sonar")
     if len(poses) > SONARS_MOST:
@@ -184,7 +198,15 @@ def _check_array(array: Any, k: int, own: list[int], lines: Lines) -> None:
         raise SimError(f"{lines.where('sonar.array', key, k)}: {key}: no such key{_meant(key, _ARRAY)}")
 
 
-def _arrays(sonar: dict[str, Any], sonars: int, lines: Lines) -> list[dict[str, Any]]:
+def _arrays(sonar: dict[str, Any], sonars: int, sectors: int, lines: Lines) -> list[dict[str, Any]]:
+    """Return the arrays of the sonars, then those that sectors make."""
+    made = _own_arrays(sonar, sonars, lines) if sonars else []
+    more = range(len(made), -(-(sonars + sectors) // ARRAY_SONARS))
+    own = [list(range(ARRAY_SONARS * k, min(ARRAY_SONARS * (k + 1), sonars + sectors))) for k in more]
+    return made + [{"index": k, "place": "ring", "order": order} for k, order in zip(more, own, strict=True)]
+
+
+def _own_arrays(sonar: dict[str, Any], sonars: int, lines: Lines) -> list[dict[str, Any]]:
     count = -(-sonars // ARRAY_SONARS)
     own = [list(range(sonars))[k * ARRAY_SONARS : (k + 1) * ARRAY_SONARS] for k in range(count)]
     given = sonar.get("array", [{"index": k, "place": "ring", "order": order} for k, order in enumerate(own)])
@@ -216,14 +238,16 @@ def _filled(own: dict[str, Any], lines: Lines) -> dict[str, Any]:
     for key in ("front_mm", "rear_mm", "width_mm"):
         if body.get(key, 0) <= 0:
             raise SimError(f"{lines.where('body', key)}: [body] {key} must be given, above 0")
-    poses = _poses(sonar, lines)
+    laser = _laser(own.get(_LASER, {}))
+    poses = _poses(sonar, lines, laser["sectors"] > 0)
+    poses = poses + _sectors(laser, len(poses), lines)
     forward = _forward(sonar, len(poses), lines)
     corner = math.hypot(max(body["front_mm"], body["rear_mm"]), body["width_mm"] / 2)
     face = max(1, *(poses[k]["x_mm"] for k in forward))
     body = {"swing_radius_mm": math.ceil(corner), "sonar_face_mm": face, **body}
     body = {"tolerance_centre_mm": body["sonar_face_mm"], "front_bumpers": 0, "rear_bumpers": 0, **body}
     kept = {key: like["sonar"][key] for key in ("cycle_ms", "min_mm", "no_echo_mm", "cone_deg")}
-    arrays = _arrays(sonar, len(poses), lines)
+    arrays = _arrays(sonar, len(poses) - laser["sectors"], laser["sectors"], lines)
     sonar = {**kept, **sonar, "pose": poses, "array": arrays, "arrays": len(arrays), "forward": forward}
     return {
         "identity": {
@@ -237,6 +261,42 @@ def _filled(own: dict[str, Any], lines: Lines) -> dict[str, Any]:
         "motion": merged(like["motion"], {"track_mm": body["width_mm"], **own.get("motion", {})}),
         "odometry": merged(like["odometry"], own.get("odometry", {})),
         "sonar": sonar,
+        **({_LASER: laser} if laser["sectors"] else {}),
+    }
+
+
+def _laser(own: dict[str, int]) -> dict[str, int]:
+    return {key: own.get(key, 0) or default for key, default in _LASER_KEYS.items()}
+
+
+def _sectors(laser: dict[str, int], sonars: int, lines: Lines) -> list[dict[str, Any]]:
+    """Return the sectors of a laser's scan as sensors after the sonars, left to right."""
+    sectors, field = laser["sectors"], laser["field_deg"]
+    if not 0 <= sectors <= SONARS_MOST - sonars:
+        raise SimError(
+            f"{lines.where(_LASER, 'sectors')}: sectors and sonars are more than {SONARS_MOST}, or less than none"
+        )
+    if sectors and (sonars % ARRAY_SONARS or field % sectors):
+        raise SimError(
+            f"{lines.where(_LASER, 'sectors' if sonars % ARRAY_SONARS else 'field_deg')}: sectors of a laser are whole "
+            f"degrees wide, and sonars before them fill arrays of eight"
+        )
+    return [_sector(laser, sonars, k) for k in range(sectors)]
+
+
+def _sector(laser: dict[str, int], sonars: int, k: int) -> dict[str, Any]:
+    width = laser["field_deg"] // laser["sectors"]
+    turned = laser["facing_deg"] + (laser["field_deg"] - width) // 2 - k * width
+    heading = 180 - (180 - turned) % 360
+    off = abs(heading)
+    role = "ahead" if off <= _AHEAD_MOST_DEG else "astern" if off >= 180 - _AHEAD_MOST_DEG else "abeam"
+    return {
+        "number": sonars + k,
+        "x_mm": laser["ahead_mm"],
+        "y_mm": laser["aside_mm"],
+        "heading_deg": heading,
+        "array": (sonars + k) // ARRAY_SONARS,
+        "role": role if laser["guards"] or not sonars else "none",
     }
 
 
@@ -247,12 +307,14 @@ def ring_of(table: dict[str, Any]) -> Ring:
     """Return what the fault manager takes of a table."""
     figures = {
         f"{section}.{key}": value
-        for section in ("body", "motion", "odometry", "sonar")
-        for key, value in table[section].items()
+        for section in ("body", "motion", "odometry", "sonar", _LASER)
+        for key, value in table.get(section, {}).items()
         if isinstance(value, int)
     }
+    sonars = len(table["sonar"]["pose"]) - table.get(_LASER, {}).get("sectors", 0)
     mounts = tuple(
-        (p["x_mm"], p["y_mm"], p["heading_deg"], ROLES.index(p["role"])) for p in table["sonar"]["pose"]
+        (p["x_mm"], p["y_mm"], p["heading_deg"], ROLES.index(p["role"]))
+        for p in table["sonar"]["pose"][:sonars]
     )
     return Ring(table["identity"]["subclass"], figures, mounts, tuple(table["sonar"]["forward"]))
 

@@ -80,6 +80,10 @@ class RobotTable:
     no_echo_mm: int
     cone_deg: int
     ring: Ring | None = None
+    sectors: tuple[int, ...] = ()
+    """Those of the sonars that are sectors of a laser's scan,"""
+    sector_deg: int = 0
+    """... so wide each."""
 
     @property
     def sonars(self) -> int:
@@ -142,6 +146,7 @@ def _check(ring: Ring, lines: Lines) -> None:
 
 def _built(table: dict[str, Any]) -> RobotTable:
     identity, body, sonar = table["identity"], table["body"], table["sonar"]
+    laser = table.get("laser", {})
     mounts = tuple(
         Mount(float(p["x_mm"]), float(p["y_mm"]), float(p["heading_deg"]), p["array"], p["role"])
         for p in sonar["pose"]
@@ -172,6 +177,8 @@ def _built(table: dict[str, Any]) -> RobotTable:
         min_mm=sonar["min_mm"],
         no_echo_mm=sonar["no_echo_mm"],
         cone_deg=sonar["cone_deg"],
+        sectors=tuple(range(len(mounts) - laser["sectors"], len(mounts))) if laser else (),
+        sector_deg=laser["field_deg"] // laser["sectors"] if laser else 0,
     )
 
 

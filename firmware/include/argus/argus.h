@@ -361,7 +361,10 @@ typedef enum {
     X(92, LINK_SLOW, WARN, link,                                                                             \
       "orders take effect late, or what is read is old: slower, or standing; value: ms from an order until " \
       "it shows")                                                                                            \
-    X(93, LINK_PROMPT, OK, link, "orders take effect in time again; value: ms from an order until it shows")
+    X(93, LINK_PROMPT, OK, link, "orders take effect in time again; value: ms from an order until it shows") \
+    X(94, LASER_FAULT, ERROR, laser,                                                                         \
+      "the scan of the laser as a whole is off; value: 1 frozen, 2 nothing returned, 3 range cut, 4 late, "  \
+      "5 turned about its axis, 6 scaled")
 
 // Of a guard port.
 #define ARGUS_GUARD_EVENT_TABLE(X)                                                                           \
@@ -405,6 +408,7 @@ typedef enum {
     X(events)                \
     X(guard)                 \
     X(health)                \
+    X(laser)                 \
     X(link)                  \
     X(manager)               \
     X(object)                \
@@ -658,7 +662,7 @@ typedef struct {
 // X(key, section, default, minimum, maximum, meaning): the figures of a ring. 0 stands for the default; where
 // that is 0, too, it is worked out of the others, or it must be given (its minimum is above 0). `section` is
 // that of a file.
-#define ARGUS_RING_TABLE(X)                                                                              \
+#define ARGUS_RING_BODY_TABLE(X)                                                                         \
     X(front_mm, body, 0, 1, 3000, "from the centre of rotation to the front of the body")                \
     X(rear_mm, body, 0, 1, 3000, "... to its rear")                                                      \
     X(width_mm, body, 0, 1, 3000, "of the body")                                                         \
@@ -674,6 +678,16 @@ typedef struct {
     X(no_echo_mm, sonar, 5000, 500, 5000, "a reading of this or more: nothing was heard")                \
     X(cone_deg, sonar, 30, 5, 90, "that a sonar sees")                                                   \
     X(cycle_ms, sonar, 40, 20, 120, "between two pings of one array, each after the other")
+// ... of a laser beside the sonars, or alone; a build that manages more than 16 sensors takes one.
+#define ARGUS_RING_LASER_TABLE(X)                                                                          \
+    X(sectors, laser, 0, 0, 32, "of a laser's scan; they are sensors after the last sonar, left to right") \
+    X(field_deg, laser, 180, 2, 360, "that they share, whole degrees each")                                \
+    X(facing_deg, laser, 0, -180, 180, "middle of it, counter-clockwise from ahead")                       \
+    X(ahead_mm, laser, 0, -3000, 3000, "of the laser, from the centre of rotation")                        \
+    X(aside_mm, laser, 0, -3000, 3000, "... to the left")                                                  \
+    X(guards, laser, 0, 0, 1, "1: they see what the robot drives into; of a laser alone they do")
+// All of them.
+#define ARGUS_RING_TABLE(X) ARGUS_RING_BODY_TABLE(X) ARGUS_RING_LASER_TABLE(X)
 
 // A ring and the body that carries it.
 typedef struct {
@@ -703,7 +717,8 @@ typedef struct {
     X(11, SWING, "S7: the swing circle is within the body, or farther than the sonars see")                  \
     X(12, UNSAFE,                                                                                            \
       "S5: with these settings the robot meets what it sees before it stands: lower speed_mm_s or step_mm, " \
-      "or raise object_range_mm or check_range_mm")
+      "or raise object_range_mm or check_range_mm")                                                          \
+    X(13, SECTORS, "sectors of a laser are whole degrees wide, and sonars before them fill arrays of eight")
 
 // The faults by number.
 typedef enum {
@@ -723,7 +738,7 @@ typedef struct {
 typedef struct argus_robot argus_robot_t;
 
 // Bytes of one.
-#define ARGUS_ROBOT_BYTES (184 + 6 * ARGUS_SONARS)
+#define ARGUS_ROBOT_BYTES (200 + 6 * ARGUS_SONARS)
 
 // Memory of one robot, the caller's: it lives as long as the instance.
 typedef union {
@@ -754,7 +769,7 @@ typedef struct {
 // Instance -------------------------------------------------------------------------------------------------
 
 // Bytes of one manager.
-#define ARGUS_STORAGE_BYTES (14000 + 812 * ARGUS_SONARS)
+#define ARGUS_STORAGE_BYTES (14000 + 812 * ARGUS_SONARS + (ARGUS_SONARS > 16 ? 4000 : 0))
 
 // Memory of one manager, the caller's: static, on a stack that is large enough, or part of something else.
 // Its contents are the library's own.

@@ -12,8 +12,8 @@
 #define LINE_MAX_BYTES 4096 // of a list over several lines, too
 #define DEEP_MAX 4          // files that inherit one from the other
 #define POSE_ALL 0xFu       // x_mm, y_mm, heading_deg, role
-#define SECTION_LISTED 5u   // from here on those of [[name]]
-#define SECTION_POSE 6u
+#define SECTION_LISTED 6u   // from here on those of [[name]]
+#define SECTION_POSE 7u
 
 typedef struct {
     const char *key;
@@ -373,8 +373,8 @@ static bool begin_section(load_t *load, unsigned row, const char *text) {
 }
 
 static bool take_head(load_t *load, const char *text) {
-    static const char *const known[] = {"identity", "body",        "motion",    "odometry",
-                                        "sonar",    "sonar.array", "sonar.pose"};
+    static const char *const known[] = {"identity", "body",  "motion",      "odometry",
+                                        "sonar",    "laser", "sonar.array", "sonar.pose"};
     const bool listed = text[1] == '[';
     const size_t from = listed ? 2 : 1;
     const size_t length = strcspn(text + from, "]");

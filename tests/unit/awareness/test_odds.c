@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "awareness/numbers.h"
+#include "robot/robot.h"
 #include "unity.h"
 
 #define ME 3
@@ -18,6 +19,7 @@ void setUp(void) {
     argus_evidence_t *const self = &e;
     memset(self, 0, sizeof *self);
     memset(&k, 0, sizeof k);
+    k.robot = argus_robot_default();
     k.sonars = ARGUS_SONARS < 16 ? ARGUS_SONARS : 16;
     for (int i = 0; i < k.sonars; i++) {
         k.sonar[i].health = ARGUS_HEALTHY;

@@ -30,7 +30,7 @@ static uint8_t role_of(const argus_robot_t *robot, int sonar) {
 static void describe(const argus_robot_t *robot) {
     ring = (argus_ring_t){.name = robot->name, .mounts = mounts, .sonars = robot->sonars};
 #define COPY(key, section, def, min, max, meaning) ring.key = robot->key;
-    ARGUS_RING_TABLE(COPY)
+    ARGUS_RING_BODY_TABLE(COPY)
 #undef COPY
     ring.forward_count = robot->forward_count;
     memcpy(ring.forward, robot->forward, robot->forward_count);
@@ -50,7 +50,7 @@ static void is_same(const argus_robot_t *is, const argus_robot_t *should) {
     TEST_ASSERT_EQUAL_MEMORY_ARRAY_MESSAGE(should->forward, copy.forward, 1, should->forward_count,
                                            should->name);
 #define SAME(key, section, def, min, max, meaning) TEST_ASSERT_EQUAL_MESSAGE(should->key, copy.key, #key);
-    ARGUS_RING_TABLE(SAME)
+    ARGUS_RING_BODY_TABLE(SAME)
 #undef SAME
     TEST_ASSERT_EQUAL_STRING(should->name, copy.name);
     TEST_ASSERT_EQUAL(should->reversed, copy.reversed);
@@ -152,6 +152,63 @@ void test_each_fault_is_told_apart(void) {
     mounts[7].heading_deg = -180, refused(ARGUS_RING_BEARING, 7);
     mounts[7].role = 4, refused(ARGUS_RING_ROLE, 7);
     mounts[7] = mounts[2], refused(ARGUS_RING_ALIKE, 7);
+}
+
+void test_sectors_of_a_laser_follow_the_sonars_from_left_to_right(void) {
+    if (ARGUS_SONARS <= 16) {
+        TEST_IGNORE_MESSAGE("a small build takes no laser");
+    }
+    ring.sectors = 12, ring.field_deg = 240, ring.facing_deg = 10, ring.ahead_mm = 50;
+    TEST_ASSERT_EQUAL(ARGUS_RING_OK, argus_robot_make(&own, &ring).fault);
+    const argus_robot_t *const robot = &own.rows[0];
+    TEST_ASSERT_EQUAL(20, robot->sonars);
+    TEST_ASSERT_EQUAL_HEX32(0xFFF00, argus_robot_sectors(robot));
+    TEST_ASSERT_EQUAL(20, argus_robot_cone_deg(robot, 8));
+    TEST_ASSERT_EQUAL(robot->cone_deg, argus_robot_cone_deg(robot, 7));
+    TEST_ASSERT_EQUAL(120, argus_robot_pose(robot, 8).heading_deg);
+    TEST_ASSERT_EQUAL(-100, argus_robot_pose(robot, 19).heading_deg);
+    TEST_ASSERT_EQUAL(50, argus_robot_pose(robot, 19).x_mm);
+    TEST_ASSERT_EQUAL_HEX32(0xFF, argus_robot_looking(robot)); // at one height only: they cover for none
+}
+
+void test_a_laser_alone_guards(void) {
+    if (ARGUS_SONARS <= 16) {
+        TEST_IGNORE_MESSAGE("a small build takes no laser");
+    }
+    ring.sonars = 0, ring.sectors = 24, ring.field_deg = 360;
+    ring.forward_count = 4;
+    const uint8_t forward[] = {10, 11, 12, 13};
+    memcpy(ring.forward, forward, sizeof forward);
+    TEST_ASSERT_EQUAL(ARGUS_RING_OK, argus_robot_make(&own, &ring).fault);
+    TEST_ASSERT_EQUAL(172, argus_robot_pose(&own.rows[0], 0).heading_deg);
+    TEST_ASSERT_EQUAL_HEX32(0xFF00, argus_robot_ahead(&own.rows[0]));
+    TEST_ASSERT_EQUAL_HEX32(0xFFFFFF, argus_robot_looking(&own.rows[0]));
+}
+
+void test_what_is_wrong_with_a_laser_is_told_by_its_key(void) {
+    if (ARGUS_SONARS <= 16) {
+        TEST_IGNORE_MESSAGE("a small build takes no laser");
+    }
+    static const struct {
+        int sonars, sectors, field_deg, ahead_mm, fault;
+    } bad[] = {{7, 8, 180, 0, ARGUS_RING_SECTORS},
+               {8, 7, 180, 0, ARGUS_RING_SECTORS},
+               {8, 25, 180, 0, ARGUS_RING_SONARS},
+               {8, 33, 330, 0, ARGUS_RING_FIGURE},
+               {8, 12, 180, 171, ARGUS_RING_BESIDE}};
+    for (unsigned i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        ring.sonars = (uint8_t)bad[i].sonars, ring.sectors = bad[i].sectors;
+        ring.field_deg = bad[i].field_deg, ring.ahead_mm = bad[i].ahead_mm;
+        const argus_ring_report_t report = argus_robot_make(&own, &ring);
+        TEST_ASSERT_EQUAL(bad[i].fault, report.fault);
+        TEST_ASSERT_TRUE(report.key >= 0);
+        TEST_ASSERT_EQUAL(-1, report.sonar);
+    }
+}
+void test_a_small_build_takes_no_laser(void) {
+    ring.sectors = 8, ring.field_deg = 160;
+    const bool small = ARGUS_SONARS <= 16;
+    TEST_ASSERT_EQUAL(small ? ARGUS_RING_SONARS : ARGUS_RING_OK, argus_robot_make(&own, &ring).fault);
 }
 
 void test_each_fault_of_those_that_face_forward_is_told_apart(void) {

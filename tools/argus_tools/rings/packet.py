@@ -11,7 +11,7 @@ from argus_tools.rings.motion import Motion
 from hil_sim.arcos import FLAG, Sip, SyncReply, frame
 from hil_sim.tables.robot import RobotTable
 
-FLAGS: Final = FLAG["MOTORS"] | FLAG["SONAR1"] | FLAG["SONAR2"]
+FLAGS: Final = FLAG["MOTORS"] | FLAG["SONAR1"] | FLAG["SONAR2"] | FLAG["SONAR3"] | FLAG["SONAR4"]
 _WORD: Final = 0xFFFF
 _MM: Final = 1000
 _SPEED_MOST: Final = 0x7FFF

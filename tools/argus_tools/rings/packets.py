@@ -127,5 +127,4 @@ class _Packets:
             return made
         newer.check(message)
         readings = self._plan.sensors.take(message)
-        in_mm = {number: self._plan.silence.millimetres(range_m) for number, range_m in readings.items()}
-        return made + self._pacer.take(message.t, in_mm)
+        return made + self._pacer.take(message.t, self._plan.millimetres(readings))

@@ -22,8 +22,11 @@ from argus_tools.rings.sensors import (
     RANGE,
     SCAN,
     Array,
+    Both,
     Cloud,
+    Readings,
     Scan,
+    Sectors,
     Sensors,
     Singles,
     points_of,
@@ -55,31 +58,49 @@ class Plan:
     """The sonars that are in a message at all."""
     words: list[str] = field(default_factory=list)
 
+    def millimetres(self, readings: Readings) -> dict[int, int | None]:
+        """Return readings as the fault manager takes them, in mm; what stands for no echo is of the sonars alone."""
+        sectors, far = frozenset(self.table.sectors), self.table.no_echo_mm
+        return {
+            number: (min(round(range_m * 1000), far) if range_m * 1000 < far else far)
+            if number in sectors
+            else self.silence.millimetres(range_m)
+            for number, range_m in readings.items()
+        }
+
 
 def planned(recording: Recording, name: str, topic: str | None, robot: str | None) -> Plan:
     """Return how a recording is read; LogError where it has no ring. topic, robot: what the user asks for."""
-    chosen, others = _ring_topics(recording, name, topic)
+    given = robot_table(robot) if robot else None
+    chosen, others = _topics(recording, name, topic, given)
     transforms = [one.name for one in recording.topics if one.type in TF and one.count]
     odometry = _odometry(recording.topics, chosen)
     frames, seen = _survey(recording, chosen, transforms)
     if not seen:
         raise LogError(f"{name}: no message of {', '.join(one.name for one in chosen)} can be read")
     default = robot_table(robot or DEFAULT_ROBOT)
-    sensors = _sensors(seen, robot_table(robot) if robot else None, frames, default)
+    sensors = _with_laser(seen, given, frames, default)
     silence = Silence(sensors.table.no_echo_mm, sensors.table.min_mm, sensors.greatest_m)
     present: set[int] = set()
     for message in seen:
         try:
             for number, range_m in sensors.take(message).items():
-                silence.note(number, range_m)
                 present.add(number)
+                if number not in sensors.table.sectors:
+                    silence.note(number, range_m)
         except Odd:
             continue
     no_echo = silence.settle()
+    if len(sensors.table.sectors) == sensors.table.sonars:
+        no_echo = (
+            f"no return is {sensors.table.no_echo_mm / 1000:.3f} m or more, or outside of the scan's limits"
+        )
     names = [one.name for one in chosen]
     plan = Plan(sensors.table, sensors, silence, names, odometry, transforms, frames, frozenset(present))
     count = sum(one.count for one in chosen)
     which = chosen[0].name if len(chosen) == 1 else f"{len(chosen)} topics"
+    if len(chosen) == 2 and chosen[1].type == SCAN != chosen[0].type:
+        which = f"{chosen[0].name} and {chosen[1].name}"
     plan.words.append(f"ranges: {which} ({chosen[0].type}, {count} messages), ring of {plan.table.subclass}")
     plan.words += sensors.words()
     plan.words.append(no_echo)
@@ -87,6 +108,26 @@ def planned(recording: Recording, name: str, topic: str | None, robot: str | Non
     if others:
         plan.words.append(f"not read: {', '.join(others)}; --topic chooses")
     return plan
+
+
+def _topics(
+    recording: Recording, name: str, asked: str | None, table: RobotTable | None
+) -> tuple[list[Topic], list[str]]:
+    """Return the topics of one ring, the scan of its laser last, and the names of those that are not read."""
+    scans = [one for one in recording.topics if one.type == SCAN and one.count]
+    alone = table is not None and len(table.sectors) == table.sonars
+    if alone and not scans:
+        raise LogError(f"{name}: no scan of a laser (LaserScan) in it, and the ring is a laser alone")
+    if table is None or not table.sectors or not scans:
+        return _ring_topics(recording, name, asked)
+    scans.sort(key=lambda one: (not one.name.startswith(asked or ""), -one.count, one.name))
+    others = [one.name for one in scans[1:]]
+    if alone:
+        return scans[:1], others
+    chosen, beside = _ring_topics(recording, name, None if asked == scans[0].name else asked)
+    if chosen[0].type == SCAN:
+        return scans[:1], others
+    return [*chosen, scans[0]], beside + others
 
 
 def _ring_topics(recording: Recording, name: str, asked: str | None) -> tuple[list[Topic], list[str]]:
@@ -165,6 +206,18 @@ def _survey(
     except Broken:
         pass  # reported when the messages are read
     return frames, seen
+
+
+def _with_laser(
+    seen: list[Message], table: RobotTable | None, frames: Frames, default: RobotTable
+) -> Sensors:
+    """Return what reads the messages: a scan as sectors where the ring has a laser."""
+    scans = [message for message in seen if message.type == SCAN]
+    if table is None or not table.sectors or not scans:
+        return _sensors(seen, table, frames, default)
+    laser = Sectors(scans, table, frames)
+    sonars = [message for message in seen if message.type != SCAN]
+    return Both(_sensors(sonars, table, frames, default), laser) if sonars else laser
 
 
 def _sensors(seen: list[Message], table: RobotTable | None, frames: Frames, default: RobotTable) -> Sensors:

@@ -14,6 +14,7 @@ from argus_tools.chunks import LogError
 from argus_tools.rings.geometry import Frames, Pose, frame_name, range_of, whose_frames, whose_points
 from argus_tools.rings.intake import Odd, Order, limits_of, stamp_of
 from argus_tools.rings.recording import SONAR_ARRAY, Message
+from hil_sim.laser.scan import nearest_in_sectors
 from hil_sim.tables.robot import RobotTable
 
 RANGE: Final = "sensor_msgs/msg/Range"
@@ -300,6 +301,62 @@ class Scan:
             seen = np.hypot(along, across)[beside <= math.radians(CONE_DEG)]
             found[number] = float(seen.min()) / 1000 if seen.size else math.inf
         return found
+
+
+class Sectors:
+    """A laser's scan as the ring's sectors: the nearest return in each."""
+
+    is_array = True
+    greatest_m: float | None = None
+
+    def __init__(self, seen: Sequence[Message], table: RobotTable, frames: Frames) -> None:
+        self.table = table
+        pose = frames.on_robot(seen[0].body.header.frame_id)
+        self._is_placed = pose is not None
+        self._yaw = pose.yaw_rad if pose else 0.0
+        if not self.take(seen[0]):
+            raise LogError(
+                f"the scan looks into no sector of {table.subclass}: [laser] facing_deg, field_deg"
+            )
+
+    def words(self) -> list[str]:
+        """Return what is made of the scan."""
+        where = (
+            ""
+            if self._is_placed
+            else "; no transform says whither the laser looks, so it is taken to look ahead"
+        )
+        return [
+            f"the scan is read as {len(self.table.sectors)} sectors of {self.table.sector_deg} degrees{where}"
+        ]
+
+    def take(self, message: Message) -> Readings:
+        """Return the nearest return in each sector, m; inf: nothing returned."""
+        body = message.body
+        ranges = np.asarray(body.ranges, dtype=np.float64)
+        if not (math.isfinite(body.angle_min) and math.isfinite(body.angle_increment)):
+            raise Odd("angles of the scan are not finite")
+        angles = self._yaw + body.angle_min + body.angle_increment * np.arange(len(ranges))
+        is_return = (ranges >= body.range_min) & (ranges < body.range_max) & (ranges > 0)
+        return nearest_in_sectors(self.table, angles, np.where(is_return, ranges, np.inf))
+
+
+class Both:
+    """Sonars and a laser beside them, each from messages of its own."""
+
+    is_array = True
+
+    def __init__(self, sonars: Sensors, laser: Sectors) -> None:
+        self.table, self.greatest_m = sonars.table, sonars.greatest_m
+        self._sonars, self._laser = sonars, laser
+
+    def words(self) -> list[str]:
+        """Return what was found of both."""
+        return self._sonars.words() + self._laser.words()
+
+    def take(self, message: Message) -> Readings:
+        """Return the readings of a message of either."""
+        return (self._laser if message.type == SCAN else self._sonars).take(message)
 
 
 def _sees(angles: npt.NDArray[np.float64], bearing: float) -> bool:

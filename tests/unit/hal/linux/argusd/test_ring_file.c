@@ -83,7 +83,7 @@ void test_the_known_robots_are_such_files(void) {
         TEST_ASSERT_EQUAL(robot->forward_count, file.ring.forward_count);
         TEST_ASSERT_EQUAL_MEMORY(robot->forward, file.ring.forward, robot->forward_count);
 #define SAME(key, section, def, min, max, meaning) TEST_ASSERT_EQUAL_MESSAGE(robot->key, file.ring.key, #key);
-        ARGUS_RING_TABLE(SAME)
+        ARGUS_RING_BODY_TABLE(SAME)
 #undef SAME
         for (int i = 0; i < robot->sonars; i++) {
             const argus_sonar_pose_t at = argus_robot_pose(robot, i);

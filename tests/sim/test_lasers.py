@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: MIT
+"""Rule: each fault of a laser is found in a simulated drive, and nothing is said of a sound one."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from hil_sim.bench.lasers import RINGS, drive, found_ms
+from hil_sim.laser.faults import FAULTS
+from hil_sim.laser.scan import Laser, cast, nearest_in_sectors
+from hil_sim.tables.robot import robot_table
+from hil_sim.world.files import load_world
+
+ALONE = str(RINGS / "laser.toml")
+SECTORS = range(15)
+
+
+def test_a_beam_ends_at_the_nearest_solid() -> None:
+    world = load_world("office")
+    found = cast(world, world.start.x_mm, world.start.y_mm, np.radians([0.0, 90.0, 180.0]))
+    assert np.isfinite(found).all()
+    for far, bearing in zip(found, (0.0, math.pi / 2, math.pi), strict=True):
+        x = world.start.x_mm + far * math.cos(bearing)
+        y = world.start.y_mm + far * math.sin(bearing)
+        x1, y1, x2, y2 = world.segments.T
+        ex, ey = x2 - x1, y2 - y1
+        along = np.clip(((x - x1) * ex + (y - y1) * ey) / (ex**2 + ey**2), 0, 1)
+        assert np.hypot(x1 + along * ex - x, y1 + along * ey - y).min() < 1
+
+
+def test_a_sector_takes_its_nearest_beam() -> None:
+    table = robot_table(ALONE)
+    ranges = np.full(181, np.inf)
+    ranges[90 + 14] = 1234.0
+    found = nearest_in_sectors(table, Laser().angles, ranges)
+    assert {k: mm for k, mm in found.items() if np.isfinite(mm)} == {6: 1234.0}
+    assert table.mounts[6].heading_deg == 12
+
+
+@pytest.mark.parametrize("ring", ["laser", "sonars-laser"])
+def test_nothing_is_said_of_a_sound_one(ring: str) -> None:
+    outcome = drive(str(RINGS / f"{ring}.toml"), "gen-office", 1, 60.0)
+    assert not outcome.named, "gen-office 1"
+    assert outcome.laser_ms is None
+
+
+@pytest.mark.parametrize("fault", ["dead", "dark", "frozen", "late1s"])
+def test_what_is_plain_is_found_in_time(fault: str) -> None:
+    after = found_ms(drive(ALONE, "gen-room", 1, 40.0, fault), SECTORS)
+    assert after is not None, "gen-room 1"
+    assert after <= FAULTS[fault][1] * 1000
+
+
+@pytest.mark.parametrize(("fault", "value"), [("yaw10", 5), ("scale0.9", 6)])
+def test_what_takes_way_is_found(fault: str, value: int) -> None:
+    outcome = drive(ALONE, "gen-room", 1, 80.0, fault)
+    assert outcome.laser == value, "gen-room 1"
+    assert outcome.laser_ms is not None
+    assert outcome.laser_ms <= 80_000
+
+
+def test_a_laser_bears_witness_against_a_dead_sonar() -> None:
+    outcome = drive(str(RINGS / "sonars-laser.toml"), "gen-corridor", 2, 30.0, dead=(0,))
+    assert set(outcome.named) == {0}, "gen-corridor 2"
+    assert outcome.named[0] <= 20_000 + 3_000
