@@ -118,7 +118,8 @@ def _safety(own: Mapping[str, Record]) -> Iterator[Bar]:
     yield Bar(
         "all rows: attributable collisions", "0 in 1000 missions", float(hits), None, "", missions, verdict
     )
-    peopled = [row for name, row in own.items() if parse_row(name).people]
+    # Published figures of before the split do not have it.
+    peopled = [row for name, row in own.items() if parse_row(name).people and "met_ahead" in row]
     if peopled:
         met = float(sum(row["met_ahead"] for row in peopled))
         name = "rows with people: somebody met ahead"
