@@ -82,6 +82,7 @@ static void skip(argus_parser_t *self, size_t count) {
 }
 
 void argus_parser_flush(argus_parser_t *self) {
+    self->ahead = 0;
     skip(self, self->length);
 }
 
@@ -107,8 +108,16 @@ static size_t owed(const argus_parser_t *self) {
     return total > held ? total - held : 0;
 }
 
+static size_t least(size_t a, size_t b) {
+    return a < b ? a : b;
+}
+
+static bool is_quiet(const argus_parser_t *self, uint32_t now_ms) {
+    return argus_elapsed_ms(now_ms, self->last_byte_ms) >= ARCOS_FRAME_RESYNC_QUIET_MS;
+}
+
 static void note_silence(argus_parser_t *self, uint32_t now_ms) {
-    if (self->length > 0 && argus_elapsed_ms(now_ms, self->last_byte_ms) >= ARCOS_FRAME_RESYNC_QUIET_MS) {
+    if (self->length > 0 && is_quiet(self, now_ms)) {
         self->broken_off = true;
     }
 }
@@ -141,10 +150,28 @@ static size_t append(argus_parser_t *self, const uint8_t *bytes, size_t count) {
     return taken;
 }
 
+// Bytes of a packet that is under way and in no doubt, as they come one by one.
+static void append_ahead(argus_parser_t *self, uint32_t now_ms, const uint8_t *bytes, size_t count) {
+    ARGUS_ASSERT(self->length >= HEADER_BYTES && end_of(self) + count <= ARGUS_PARSER_BYTES);
+    if (count == 1) { // most often, and then a call costs more than all else
+        self->held[end_of(self)] = *bytes;
+    } else {
+        memcpy(self->held + end_of(self), bytes, count);
+    }
+    self->length = (uint16_t)(self->length + count);
+    self->ahead = (uint8_t)(self->ahead - count);
+    self->last_byte_ms = now_ms;
+}
+
 size_t argus_parser_push(argus_parser_t *self, uint32_t now_ms, const uint8_t *bytes, size_t count) {
     if (count == 0) {
         return 0;
     }
+    if (count <= self->ahead && !is_quiet(self, now_ms)) {
+        append_ahead(self, now_ms, bytes, count);
+        return count;
+    }
+    self->ahead = 0;
     note_silence(self, now_ms);
     make_room(self);
     size_t taken = 0;
@@ -234,7 +261,7 @@ static bool find_inside(argus_parser_t *self, argus_packet_t *packet) {
 static bool is_overdue(const argus_parser_t *self, uint32_t now_ms) {
     const uint32_t count = self->length < HEADER_BYTES ? 0 : self->held[self->first + 2];
     const uint32_t wire_ms = count * ARCOS_TIMING_BITS_PER_BYTE * 1000 / SLOWEST_BAUD;
-    return argus_elapsed_ms(now_ms, self->last_byte_ms) >= ARCOS_FRAME_RESYNC_QUIET_MS &&
+    return is_quiet(self, now_ms) &&
            argus_elapsed_ms(now_ms, self->since_ms) > wire_ms + ARCOS_FRAME_RESYNC_EXTRA_MS;
 }
 
@@ -252,7 +279,27 @@ static bool accept_head(argus_parser_t *self) {
     return false;
 }
 
+// How many bytes may follow until the packet is whole, or can be doubted. A SIP is by its sonar count, so
+// from then on or never.
+static size_t undecided(const argus_parser_t *self) {
+    const size_t held = self->length;
+    if (held < HEADER_BYTES || self->first >= ARGUS_FRAME_TOTAL_MAX || is_doubtful(self)) {
+        return 0;
+    }
+    size_t last = held + owed(self) - 1;
+    if (held < PACKET_MIN) {
+        last = least(last, PACKET_MIN - 1);
+    } else if (held <= ARCOS_SIP_OFFSET_SONAR_COUNT && is_sip(self->held[self->first + HEADER_BYTES])) {
+        last = least(last, ARCOS_SIP_OFFSET_SONAR_COUNT);
+    }
+    return least(last - held, UINT8_MAX);
+}
+
 bool argus_parser_next(argus_parser_t *self, uint32_t now_ms, argus_packet_t *packet) {
+    if (self->ahead > 0 && !is_quiet(self, now_ms)) {
+        return false;
+    }
+    self->ahead = 0;
     note_silence(self, now_ms);
     for (seek(self); self->length > 0; seek(self)) {
         if (owed(self) == 0) {
@@ -265,6 +312,7 @@ bool argus_parser_next(argus_parser_t *self, uint32_t now_ms, argus_packet_t *pa
             self->timeouts++;
             skip(self, 1);
         } else {
+            self->ahead = (uint8_t)undecided(self);
             return false;
         }
     }

@@ -44,6 +44,7 @@ typedef struct {
     uint16_t length;   // bytes held
     uint16_t searched; // every packet inside the first one that ends up to here has been found bad
     bool broken_off;   // 30 ms went by without a byte while a packet was incomplete
+    uint8_t ahead;     // so many bytes more bring nothing to decide, if no silence comes between
     uint32_t last_byte_ms;
     uint32_t since_ms; // the first byte held arrived then at the latest
     uint32_t packets;  // monotonic counters

@@ -664,3 +664,55 @@ void test_a_million_hostile_bytes_are_survived_and_accounted_for(void) {
         TEST_ASSERT_GREATER_THAN_MESSAGE(0, parser.packets, "the stream is not hostile enough");
     }
 }
+
+// What the shortcut for bytes of a packet under way leaves out must change nothing: `plain` never takes it.
+static void both_take(argus_parser_t *parser, argus_parser_t *plain, uint32_t now_ms, const uint8_t *bytes,
+                      size_t count) {
+    for (size_t at = 0; at < count;) {
+        argus_packet_t one;
+        argus_packet_t other;
+        plain->ahead = 0;
+        const size_t taken = argus_parser_push(parser, now_ms, bytes + at, count - at);
+        TEST_ASSERT_EQUAL_MESSAGE(argus_parser_push(plain, now_ms, bytes + at, count - at), taken, message);
+        at += taken;
+        for (bool more = true; more;) {
+            plain->ahead = 0;
+            more = argus_parser_next(parser, now_ms, &one);
+            TEST_ASSERT_EQUAL_MESSAGE(argus_parser_next(plain, now_ms, &other), more, message);
+            if (more) {
+                TEST_ASSERT_EQUAL_MESSAGE(other.count, one.count, message);
+                TEST_ASSERT_EQUAL_MEMORY_MESSAGE(other.data, one.data, one.count, message);
+            }
+        }
+        plain->ahead = parser->ahead;
+        TEST_ASSERT_EQUAL_MEMORY_MESSAGE(plain, parser, offsetof(argus_parser_t, held), message);
+    }
+}
+
+void test_bytes_of_a_packet_under_way_are_taken_as_any_others(void) {
+    size_t ahead = 0;
+    for (uint64_t seed = 1; seed <= 12; seed++) {
+        random_t random = random_seed(seed);
+        argus_parser_t parser;
+        argus_parser_t plain;
+        uint32_t now_ms = UINT32_MAX - 5000;
+        argus_parser_init(&parser);
+        argus_parser_init(&plain);
+        for (unsigned n = 0; n < 300; n++) {
+            uint8_t chunk[2 * ARGUS_FRAME_TOTAL_MAX];
+            size_t size = random_below(&random, 2) ? nasty(&random, chunk)
+                                                   : sip_with(chunk, random_below(&random, 17), (uint8_t)n);
+            size = random_below(&random, 8) ? size : random_below(&random, (uint32_t)size) + 1;
+            snprintf(message, sizeof message, "seed %llu, piece %u", (unsigned long long)seed, n);
+            for (size_t at = 0; at < size;) {
+                const size_t left = size - at;
+                const size_t part = random_below(&random, 4) ? 1 : 1 + random_below(&random, 40);
+                both_take(&parser, &plain, now_ms, chunk + at, part < left ? part : left);
+                at += part < left ? part : left;
+                ahead += parser.ahead > 0;
+                now_ms += random_below(&random, 60) ? random_below(&random, 3) : random_below(&random, 400);
+            }
+        }
+    }
+    TEST_ASSERT_GREATER_THAN_MESSAGE(1000, ahead, "the shortcut is never taken");
+}
