@@ -21,6 +21,8 @@ from argus_tools.monitor.server import NO_TOKEN, TOO_MANY, Server, page_files, w
 from argus_tools.monitor.upstream import Address
 from fake_argusd import FakeArgusd, recorded
 
+from hil_sim.faults.values import value_words
+
 Message = dict[str, Any]
 # A guard against what hangs, not a rule.
 PATIENCE_S = 120.0
@@ -328,7 +330,8 @@ def test_a_page_sees_the_drive_and_one_that_comes_late_its_story(tmp_path: Path)
         told = {key for message in late.got for key in message}
         assert {"about", "robot", "link", "trail"} <= told
         events = [m for m in recorded() if "event" in m and m["event"] != "STATUS"]
-        assert [m for m in late.got if "event" in m and m["event"] != "STATUS"] == events
+        shown = [m | {"shown": value_words(m["event"], m["value"])} for m in events]
+        assert [m for m in late.got if "event" in m and m["event"] != "STATUS"] == shown
 
     on_site(tmp_path, act)
 
