@@ -27,6 +27,7 @@ setup >setup.log 2>&1 || { cat setup.log >&2; echo "NOT RUN: the packages cannot
 cat >presence.py <<'END'
 import io
 import logging
+from unittest import mock
 
 from LD2410.ld2410 import LD2410
 
@@ -40,9 +41,6 @@ def report(distance):
 class Port:
     """A sensor that sends a report, and that holds a detection for 300 s."""
 
-    def __init__(self, waiting):
-        self.stream = io.BytesIO(waiting)
-
     def read(self, count=1):
         return self.stream.read(count)
 
@@ -53,13 +51,13 @@ class Port:
 
 
 logging.disable(logging.CRITICAL)
-sensor = LD2410.__new__(LD2410)
-sensor.eng_mode, sensor.read_fail_count = False, 0
+port = Port()
+with mock.patch("serial.Serial", lambda *arguments, **options: port):
+    sensor = LD2410("a port")
 for distance in (100, 250, 256, 300, 500):
-    sensor.ser = Port(report(distance))
+    port.stream = io.BytesIO(report(distance))
     seen = sensor.get_radar_data()[0]
     print(f"somebody at {distance} cm: static target {seen[3]}, detection {seen[5]}")
-sensor.ser = Port(b"")
 print("a hold time of 300 s:", sensor.read_detection_params()[0][2])
 END
 venv/bin/python presence.py >seen

@@ -26,6 +26,7 @@ setup >setup.log 2>&1 || { cat setup.log >&2; echo "NOT RUN: the packages cannot
 cat >gates.py <<'END'
 import io
 import logging
+from unittest import mock
 
 from LD2410.ld2410 import LD2410
 
@@ -38,9 +39,6 @@ LIGHT = bytes([33, 1])
 class Port:
     """A sensor that sends a report, and whose sensitivities are 10 to 18 and 20 to 28."""
 
-    def __init__(self, waiting):
-        self.stream = io.BytesIO(waiting)
-
     def read(self, count=1):
         return self.stream.read(count)
 
@@ -51,14 +49,16 @@ class Port:
 
 
 logging.disable(logging.CRITICAL)
-sensor = LD2410.__new__(LD2410)
-sensor.eng_mode, sensor.read_fail_count = True, 0
+port = Port()
+with mock.patch("serial.Serial", lambda *arguments, **options: port):
+    sensor = LD2410("a port")
+sensor.eng_mode = True
 body = b"\x01\xaa" + TARGET + b"\x08\x08" + MOVING + STATIC + LIGHT + b"\x55\x00"
-sensor.ser = Port(bytes.fromhex("f4f3f2f1") + len(body).to_bytes(2, "little") + body + bytes.fromhex("f8f7f6f5"))
+length = len(body).to_bytes(2, "little")
+port.stream = io.BytesIO(bytes.fromhex("f4f3f2f1") + length + body + bytes.fromhex("f8f7f6f5"))
 _, moving, static = sensor.get_radar_data()
 print("moving energies:", len(moving), "values, 90 at index", moving.index(90), "first", moving[0])
 print("static energies:", len(static), "values, 70 at index", static.index(70), "last", static[-1])
-sensor.ser = Port(b"")
 _, moving, static = sensor.read_detection_params()
 print("sensitivities:", moving, static)
 END
