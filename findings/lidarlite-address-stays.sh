@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # adafruit_lidarlite promises to give the laser another address and does not: it looks for one that has it already.
 #
-# Version:   adafruit-circuitpython-lidarlite 1.3.14.
+# Version:   adafruit-circuitpython-lidarlite 1.3.14, adafruit-circuitpython-busdevice 5.2.17.
 # Expected:  LIDARLite(bus, address=0x44) changes the address of the laser at 0x62, so that several can share a bus, as
 #            its description says.
 # Behaviour: No register of the address is written and none of the serial number is read. The laser at 0x62 is not
