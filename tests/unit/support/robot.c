@@ -584,30 +584,38 @@ static double nearest_shown_mm(const robot_t *robot) {
     return nearest;
 }
 
-// Turned by so much, the body is at least this far from every echo shown by a sonar that is relied on; 0: it
-// would touch one.
-static double body_to_shown_mm(const robot_t *robot, double by) {
-    double nearest = 1e9;
-    for (int i = 0; i < 16 && i < ARGUS_SONARS; i++) {
-        const argus_sonar_pose_t *at = &argus_robot_table.poses[i];
-        if (argus_is_out(&robot->argus.knowledge, i) || robot->shown[i] < 0 || robot->shown[i] >= 5000) {
-            continue;
-        }
-        const double ex = at->x_mm + robot->shown[i] * cos(at->heading_deg * DEG);
-        const double ey = at->y_mm + robot->shown[i] * sin(at->heading_deg * DEG);
-        const double x = ex * cos(by) + ey * sin(by);
-        const double y = ey * cos(by) - ex * sin(by);
-        nearest = fmin(nearest, sqrt(to_body_square((spot_t){x, y})));
+// Turned by so much, the body is so far from the echo that a sonar shows; 0: it would touch it.
+static double body_to_shown_mm(const robot_t *robot, int sonar, double by) {
+    const argus_sonar_pose_t *at = &argus_robot_table.poses[sonar];
+    const double ex = at->x_mm + robot->shown[sonar] * cos(at->heading_deg * DEG);
+    const double ey = at->y_mm + robot->shown[sonar] * sin(at->heading_deg * DEG);
+    const double x = ex * cos(by) + ey * sin(by);
+    const double y = ey * cos(by) - ex * sin(by);
+    return sqrt(to_body_square((spot_t){x, y}));
+}
+
+// The turn leaves 30 mm to the echo of a sonar that is relied on, or brings the body no nearer to it than it
+// is.
+static bool clears(const robot_t *robot, int sonar, double by) {
+    if (argus_is_out(&robot->argus.knowledge, sonar) || robot->shown[sonar] < 0 ||
+        robot->shown[sonar] >= 5000) {
+        return true;
     }
-    return nearest;
+    const double least_mm = fmin(30, body_to_shown_mm(robot, sonar, 0));
+    for (int part = 1; part <= 20; part++) {
+        if (body_to_shown_mm(robot, sonar, by * part / 20) < least_mm) {
+            return false;
+        }
+    }
+    return true;
 }
 
 // S7: a turn so small that the body clears everything in it, where the profile lets it.
 static bool is_nudge(const robot_t *robot, int32_t to_deg) {
     const double by = wrapped(robot->th0 + to_deg * DEG - robot->th);
     bool clear = argus_rules(&robot->argus)->nudges && fabs(by) <= 21 * DEG;
-    for (int part = 0; part <= 20; part++) {
-        clear = clear && body_to_shown_mm(robot, by * part / 20) >= 30;
+    for (int i = 0; i < 16 && i < ARGUS_SONARS; i++) {
+        clear = clear && clears(robot, i, by);
     }
     return clear;
 }
