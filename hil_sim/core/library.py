@@ -224,7 +224,7 @@ def setting_value(key: str, text: str) -> int:
         raise InputError(f"{key} = {text}: give a whole number{' or auto' if choices else ''}") from error
 
 
-class Event(NamedTuple):
+class CoreEvent(NamedTuple):
     """One thing that the manager said."""
 
     t_ms: int
@@ -369,7 +369,7 @@ class Fed(NamedTuple):
 
     taken: int
     now_ms: int
-    said: list[tuple[int, int, Event]]
+    said: list[tuple[int, int, CoreEvent]]
 
 
 class Core:
@@ -442,14 +442,14 @@ class Core:
             packets.append(self._packet.raw[:size])
         return packets
 
-    def events(self) -> Iterator[Event]:
+    def events(self) -> Iterator[CoreEvent]:
         """Yield what was said since the last call."""
         while self._library.argus_shim_event(self._core, self._event):
             yield self._event_of(tuple(self._event))
 
-    def _event_of(self, values: Sequence[int]) -> Event:
+    def _event_of(self, values: Sequence[int]) -> CoreEvent:
         fields = dict(zip(self._event_names, values, strict=True))
-        return Event(
+        return CoreEvent(
             fields["t_ms"] & 0xFFFFFFFF,
             fields["id"],
             None if fields["sonar"] == _NO_SONAR else fields["sonar"],

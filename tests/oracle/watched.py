@@ -8,8 +8,7 @@ from typing import Any, cast
 
 from safety_monitor import Monitor, Violation, settings_of
 
-from hil_sim.core.library import Core, health_name, kind_name, library, sonars_of
-from hil_sim.core.library import Event as CoreEvent
+from hil_sim.core.library import Core, CoreEvent, health_name, kind_name, library, sonars_of
 from hil_sim.sil import Mission, Sil
 
 _HEAD = 2

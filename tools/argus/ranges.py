@@ -15,14 +15,14 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Final
 
-from hil_sim.core.library import Core, Event, setting_value
+from hil_sim.core.library import Core, CoreEvent, setting_value
 from hil_sim.errors import InputError
 from hil_sim.tables.robot import DEFAULT_ROBOT, robot_table
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Event", "InputError", "Observer"]
+__all__ = ["CoreEvent", "InputError", "Observer"]
 
 _OLD_MS: Final = 250
 _FAR: Final = 2**31 - 1
@@ -51,7 +51,7 @@ class Observer:
         speeds: Sequence[float] | NDArray[Any],
         ranges: Sequence[float] | NDArray[Any],
         ages_s: Sequence[float] | NDArray[Any] | None = None,
-    ) -> list[Event]:
+    ) -> list[CoreEvent]:
         """Take one time; return what is said. InputError for what does not hold.
 
         pose: x, y, heading. speeds: ahead, and the turn. ranges: one of each sonar; NaN is none since the last call,

@@ -14,7 +14,7 @@ from argus_tools.rings.packet import empty, identity_of, packet
 
 from argus_ros.repair import Verdict
 from hil_sim.arcos import TIMING
-from hil_sim.core.library import Core, Event
+from hil_sim.core.library import Core, CoreEvent
 from hil_sim.tables.robot import RobotTable
 
 _SIP_MS: Final = TIMING["SIP_CYCLE_MS"]
@@ -43,7 +43,7 @@ class Ring:
         self._now_ms = 0
         self._sip_ms = 0
         self._verdicts: list[Verdict] = [Verdict()] * table.sonars
-        self._said: list[Event] = []
+        self._said: list[CoreEvent] = []
         self.restarts = 0
         self.failure = "IsNormal"
         self._opened()  # settings that do not hold are refused now, not at the first message
@@ -98,7 +98,7 @@ class Ring:
             self._verdicts = [Verdict(*pair) for pair in zip(status["health"], status["kind"], strict=True)]
             self.failure = str(status["failure"])
 
-    def events(self) -> Iterator[Event]:
+    def events(self) -> Iterator[CoreEvent]:
         """Yield what was said since the last call."""
         said, self._said = self._said, []
         yield from said

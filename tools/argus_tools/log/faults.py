@@ -17,7 +17,7 @@ from argus_tools.log.opening import identity_in, is_sip, opened
 from argus_tools.log.packets import Row
 from argus_tools.log.summary import Summary
 from hil_sim.arcos import FLAG, SIP, TIMING, Command, SyncReply
-from hil_sim.core.library import Core, Event, kind_name, setting_value
+from hil_sim.core.library import Core, CoreEvent, kind_name, setting_value
 from hil_sim.faults.values import value_words
 
 EXAMPLES: Final = """\
@@ -60,7 +60,7 @@ class Said(NamedTuple):
 
     t: float | None
     offset: int
-    event: Event
+    event: CoreEvent
 
 
 class _Arrays:
@@ -252,7 +252,7 @@ class Listener:
     def _is_damaged(self) -> bool:
         return _DAMAGED_SHARE * (len(self._lately) - sum(self._lately)) >= max(1, len(self._lately))
 
-    def _is_unborne(self, event: Event) -> bool:
+    def _is_unborne(self, event: CoreEvent) -> bool:
         """Whether an event gives a sonar out as silent that may only be so by the log's damage."""
         if event.sonar is None:
             return False
@@ -302,7 +302,7 @@ class Listener:
             if said := self._placed(event, row):
                 yield said
 
-    def _placed(self, event: Event, row: Row) -> Said | None:
+    def _placed(self, event: CoreEvent, row: Row) -> Said | None:
         """Return an event with the log's time; None for what the log bears out nothing of."""
         if event.sonar is not None and not self._is_heard(event.sonar):
             return None

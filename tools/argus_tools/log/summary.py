@@ -9,7 +9,7 @@ from typing import Any, Final
 
 from argus_tools.log.packets import Row
 from hil_sim.arcos import TIMING
-from hil_sim.core.library import Event, kind_name
+from hil_sim.core.library import CoreEvent, kind_name
 
 # A suspicion that is younger may go with the next SIP.
 LASTING_S: Final = 5.0
@@ -63,7 +63,7 @@ class Summary:
         for row in rows[last:]:
             self.see(row.t, row.type == "SIP" and row.ok)
 
-    def add(self, event: Event, t: float | None, offset: int) -> None:
+    def add(self, event: CoreEvent, t: float | None, offset: int) -> None:
         """Take the next event, with the log's time if it keeps one, and the place of the packet that brought it."""
         name = event.event
         if name == _BEGUN:
@@ -192,4 +192,4 @@ class Summary:
 
 
 def _name(sonar: int) -> str:
-    return Event(0, 0, sonar, "", 0).name
+    return CoreEvent(0, 0, sonar, "", 0).name
