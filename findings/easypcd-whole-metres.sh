@@ -1,7 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# easypcd writes text clouds in whole numbers: 0.9 m is 0, and coloured PCD files that nothing can read, itself
-# included.
+# easypcd writes text clouds in whole numbers: 0.9 m is 0, and coloured PCD files that neither it nor pypcd4 can read.
 #
 # Version:   easypcd 0.0.33, pypcd4 1.5.1, scipy 1.17.1, numpy 2.4.6.
 # Expected:  write_txt() writes the coordinates; write_pcd() with color=True writes a file that read_pcd() reads.
