@@ -115,15 +115,22 @@ def found_of_one(rows: Iterable[Record]) -> dict[str, Record]:
 def _safety(own: Mapping[str, Record]) -> Iterator[Bar]:
     hits, missions = sum(row["attributable"] for row in own.values()), _missions(own.values())
     verdict = "fail" if hits else "pass" if missions >= _MISSIONS else "open"
-    yield Bar(
-        "all rows: attributable collisions", "0 in 1000 missions", float(hits), None, "", missions, verdict
-    )
+    name = "all rows: attributable collisions"
+    yield Bar(name, "0 in 1000 missions", float(hits), None, "", missions, verdict)
+    yield from _people(own)
+    yield from _closest(own)
+
+
+def _people(own: Mapping[str, Record]) -> Iterator[Bar]:
     # Published figures of before the split do not have it.
     peopled = [row for name, row in own.items() if parse_row(name).people and "met_ahead" in row]
     if peopled:
         met = float(sum(row["met_ahead"] for row in peopled))
         name = "rows with people: somebody met ahead"
         yield Bar(name, "0", met, None, "", _missions(peopled), "fail" if met else "pass")
+
+
+def _closest(own: Mapping[str, Record]) -> Iterator[Bar]:
     healthy = [row for name, row in own.items() if not parse_row(name).has_faults]
     near = [(row["closest_mm"]["least"], row["row"]) for row in healthy if row["closest_mm"]["n"]]
     if near:

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import argparse
 import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -13,6 +12,7 @@ from typing import Final
 
 import numpy as np
 
+from hil_sim.bench.arguments import Parser
 from hil_sim.bench.worlds import make_world
 from hil_sim.core.library import Core, kind_name
 from hil_sim.laser.drive import Step, roam
@@ -80,29 +80,38 @@ def drive(
     places = room.places(_CLEAR_MM)
     place = places[rng.integers(len(places))]
     start = Pose(float(place[0]), float(place[1]), float(rng.uniform(-180, 180)))
-    laser = Laser()
-    if table.sectors and table.sector_deg * len(table.sectors) == 360:
-        laser = Laser(x_mm=0.0, field_deg=360.0, beams=361)
+    laser = _laser_of(table)
     core = Core(0, {"active": 0}, table.ring)
     core.link_up(0)
     outcome, scans = Outcome(dead=dead), list[Floats]()
     sonars = _Sonars(table, world, rng)
     for step in roam(world, start, seconds, rng):
         scans.append(scan(laser, world, step.true, rng))
-        reported = _reported(scans, step.t_ms, fault)
         begun = step.t_ms >= _BEGINS_MS
         ranges = sonars.heard(step.true, dead if begun else ())
-        if reported is not None:
-            ranges += [
-                (number, 5000 if mm >= 5000 else max(1, round(mm)), 0)
-                for number, mm in nearest_in_sectors(table, laser.angles, reported).items()
-            ]
+        ranges += _sectors_of(table, laser, _reported(scans, step.t_ms, fault))
         core.observe(step.t_ms, _motion(step), ranges)
         core.process(step.t_ms)
         core.transmit()
         _note(outcome, core)
         outcome.way_mm += abs(step.speed_mm_s) * 0.1 if begun or not (fault or dead) else 0.0
     return outcome
+
+
+def _laser_of(table: RobotTable) -> Laser:
+    if table.sectors and table.sector_deg * len(table.sectors) == 360:
+        return Laser(x_mm=0.0, field_deg=360.0, beams=361)
+    return Laser()
+
+
+def _sectors_of(table: RobotTable, laser: Laser, reported: Floats | None) -> list[tuple[int, int, int]]:
+    """The nearest of each sector as the core takes it; none where the laser sends no scan."""
+    if reported is None:
+        return []
+    return [
+        (number, 5000 if mm >= 5000 else max(1, round(mm)), 0)
+        for number, mm in nearest_in_sectors(table, laser.angles, reported).items()
+    ]
 
 
 def _reported(scans: Sequence[Floats], t_ms: int, fault: str) -> Floats | None:
@@ -145,36 +154,44 @@ def found_ms(outcome: Outcome, sensors: Sequence[int]) -> int | None:
 
 def table_of(ring: str, seeds: Sequence[int], seconds: float, worlds: Sequence[str] = WORLDS) -> list[str]:
     """Return a table: a healthy laser, then each fault."""
-    sectors = robot_table(ring).sectors
+    places = [(world, seed) for world in worlds for seed in seeds]
     lines = ["| laser | drives | found in time | median s | bar s |", "|---|---|---|---|---|"]
-    healthy = [drive(ring, world, seed, seconds) for world in worlds for seed in seeds]
+    lines.append(_healthy_row(ring, places, seconds))
+    lines += [_fault_row(ring, places, fault, bar_s) for fault, (_, bar_s) in FAULTS.items()]
+    return lines
+
+
+def _healthy_row(ring: str, places: Sequence[tuple[str, int]], seconds: float) -> str:
+    sectors = robot_table(ring).sectors
+    healthy = [drive(ring, world, seed, seconds) for world, seed in places]
     named = sum(any(k in one.named for k in sectors) or one.laser_ms is not None for one in healthy)
     sonars = sum(any(k not in sectors for k in one.named) for one in healthy)
     hours = seconds * len(healthy) / 3600
-    lines.append(f"| healthy | {len(healthy)} | named {named}, sonars {sonars} in {hours:.1f} h | | |")
-    for fault, (_, bar_s) in FAULTS.items():
-        outcomes = [
-            drive(ring, world, seed, _BEGINS_MS / 1000 + max(90.0, bar_s + 5), fault)
-            for world in worlds
-            for seed in seeds
-        ]
-        times = [found_ms(one, sectors) for one in outcomes]
-        in_time = [t for t in times if t is not None and t <= bar_s * 1000]
-        all_found = [t / 1000 for t in times if t is not None]
-        middle = f"{median(all_found):.1f}" if all_found else ""
-        lines.append(f"| {fault} | {len(times)} | {len(in_time)} | {middle} | {bar_s:.0f} |")
-    return lines
+    return f"| healthy | {len(healthy)} | named {named}, sonars {sonars} in {hours:.1f} h | | |"
+
+
+def _fault_row(ring: str, places: Sequence[tuple[str, int]], fault: str, bar_s: float) -> str:
+    sectors = robot_table(ring).sectors
+    seconds = _BEGINS_MS / 1000 + max(90.0, bar_s + 5)
+    times = [found_ms(drive(ring, world, seed, seconds, fault), sectors) for world, seed in places]
+    found = [t / 1000 for t in times if t is not None]
+    in_time = sum(t <= bar_s for t in found)
+    middle = f"{median(found):.1f}" if found else ""
+    return f"| {fault} | {len(times)} | {in_time} | {middle} | {bar_s:.0f} |"
 
 
 def main(words: Sequence[str]) -> int:
     """Print the table; return the exit code."""
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="argus-sim bench laser",
         description="Drive about generated worlds with a laser, sound and faulty; print how soon faults are found.",
+        epilog="example: argus-sim bench laser --seeds 1 --seconds 200",
     )
     parser.add_argument("--ring", default=str(RINGS / "laser.toml"), help="a TOML file with a laser")
     parser.add_argument("--seeds", type=int, default=2, help="so many drives in each world (default 2)")
     parser.add_argument("--seconds", type=float, default=300.0, help="of a healthy drive (default 300)")
     args = parser.parse_args(words)
+    if args.seeds < 1 or not args.seconds > 0:
+        parser.error("--seeds must be 1 or more, --seconds above 0")
     print("\n".join(table_of(args.ring, range(1, args.seeds + 1), args.seconds)))
     return 0

@@ -14,12 +14,12 @@ LINES_MAX = 500
 COMPLEXITY_MAX = 10
 # From the bottom to the top: a room uses those before it only.
 ROOMS = (
-    ("arguments", "errors", "output", "version"),
+    ("arguments", "errors", "output", "program", "version"),
     ("core",),
     ("claim", "document", "tables"),
     ("arcos", "record"),
     ("world",),
-    ("sonar",),
+    ("sonar", "laser"),
     ("faults",),
     ("robot",),
     ("server",),
