@@ -184,9 +184,13 @@ int32_t argus_odometry_unseen_mm(const argus_span_t *const span, const argus_ord
 }
 
 // The way of so many SIPs: those before the one that came got lost, and its speeds tell less of them.
+// Wheels that stand all at once show that more time went by than that.
 static bool is_way_of(const argus_span_t *const span, const argus_moved_t *const step, const int32_t sips) {
     const argus_way_turn_t next = argus_odometry_by_wheels(span);
-    return argus_abs(step->ahead_mm - sips * next.way_mm) <= sips * NEXT_MM &&
+    const int32_t left_mm_s = argus_abs(span->after.left_mm_s - span->before.left_mm_s);
+    const int32_t right_mm_s = argus_abs(span->after.right_mm_s - span->before.right_mm_s);
+    return argus_max(left_mm_s, right_mm_s) <= times_ms(ACCEL_MM_S2, sips * ARCOS_TIMING_SIP_CYCLE_MS) &&
+           argus_abs(step->ahead_mm - sips * next.way_mm) <= sips * NEXT_MM &&
            argus_abs(step->turn_cdeg - sips * next.turn_cdeg) <= sips * ROOM_CDEG;
 }
 
