@@ -23,10 +23,10 @@ static bool is_return(const int32_t mm) {
     return mm < ARGUS_NO_ECHO_MM;
 }
 
-// `back`: 1 is the last one.
+// `back`: 1 is the last one, self->count the first.
 static const argus_scan_t *scan_at(const argus_laser_t *const self, const int back) {
-    ARGUS_ASSERT(back >= 1);
-    return back <= self->count ? &self->scan[(self->next + 2 * ARGUS_SCANS - back) % ARGUS_SCANS] : NULL;
+    ARGUS_ASSERT(back >= 1 && back <= ARGUS_SCANS);
+    return &self->scan[(self->next + 2 * ARGUS_SCANS - back) % ARGUS_SCANS];
 }
 
 // The scan of a time, to a slot; NULL: none.
@@ -366,7 +366,7 @@ void argus_laser_sip(argus_laser_t *const self, const argus_knowledge_t *const k
     self->sectors = mask;
     const int count = argus_count_bits(mask);
     const sectors_t sectors = {knowledge, knowledge->sonars - count, count};
-    const argus_scan_t *const before = scan_at(self, 1);
+    const argus_scan_t *const before = self->count > 0 ? scan_at(self, 1) : NULL;
     if (before == NULL) {
         self->same_ms = knowledge->sip_ms;
         begin_cut(self, knowledge);

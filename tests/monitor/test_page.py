@@ -83,7 +83,7 @@ def test_no_range_lies_on_another_on_a_phone(page: Browser, dark: bool) -> None:
         seen = max(seen, shown)
         heading = page.known("state.heading_cdeg")
         page.keys(Keys.ARROW_LEFT)
-        page.wait("it turns", lambda was=heading: page.known("state.heading_cdeg") != was)
+        page.wait("it turns", lambda: page.known("state.heading_cdeg") != heading)  # noqa: B023
         page.wait("it stands", lambda: page.known("state.mode") == "IDLE")
     assert seen > 8, "there are ranges on the picture"
     assert page.js("return document.documentElement.scrollWidth - innerWidth") <= 0
