@@ -240,6 +240,21 @@ FLOWS: Final[dict[str, Flow | Bytes]] = {
             ("ranges repaired", "ROS 2 graph", ""),
         ),
     ),
+    "requirements": Flow(
+        (
+            ("safety rules", "the paper", "README"),
+            ("promise\ntests/requirements.toml",),
+            ("its tests",),
+            ("a gap fails the build",),
+        ),
+        (
+            ("safety rules", "promise", ""),
+            ("the paper", "promise", ""),
+            ("README", "promise", ""),
+            ("promise", "its tests", ""),
+            ("its tests", "a gap fails the build", ""),
+        ),
+    ),
     "safety-monitor": Flow(
         (
             ("truth", "wire, both directions", "events"),
