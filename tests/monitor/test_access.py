@@ -62,7 +62,9 @@ def test_axe_finds_nothing(page: Browser, monitor: Monitor, size: tuple[int, int
 
 
 def test_axe_would_find_something(page: Browser) -> None:
-    page.js("const stop = document.getElementById('stop'); stop.textContent = ''; stop.removeAttribute('title');")
+    page.js(
+        "const stop = document.getElementById('stop'); stop.textContent = ''; stop.removeAttribute('title');"
+    )
     assert "button-name" in [rule["id"] for rule in Axe().run(page.driver)["violations"]]
 
 
