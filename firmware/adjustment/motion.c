@@ -11,7 +11,8 @@
 #define START_MS 400 // a motion may take this long to show in the SIPs
 #define RETRY_SIPS 5 // at rest off the target for so many SIPs: command it again
 #define TRIES_MAX 3
-#define SAME_MM 20   // a MOVE that ends so near the one at work ends there, too
+#define SAME_MM 20   // a MOVE that ends so little beyond the one at work ends there, too
+#define EARLIER_MM 5 // ... or so little before it: in a narrow place more is too near
 #define RENEW_MS 600 // one that goes farther is sent so long before the robot would brake
 
 void argus_motion_init(argus_motion_t *const self) {
@@ -63,7 +64,7 @@ static bool leads_there(const argus_motion_t *const self, const argus_knowledge_
     const int32_t brakes_mm = self->speed_mm_s * self->speed_mm_s / (2 * knowledge->robot->decel_mm_s2);
     const bool goes_on = has_mm > brakes_mm + self->speed_mm_s * RENEW_MS / 1000;
     const bool rolls = self->kind == ARGUS_MOTION_MOVE && !self->settled && knowledge->still_sips == 0;
-    return rolls && has_mm > 0 && beyond_mm < SAME_MM && (beyond_mm > -SAME_MM || goes_on);
+    return rolls && has_mm > 0 && beyond_mm < EARLIER_MM && (beyond_mm > -SAME_MM || goes_on);
 }
 
 static void send_move(argus_motion_t *const self, argus_outbox_t *const out,

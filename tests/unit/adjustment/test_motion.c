@@ -168,8 +168,8 @@ void test_a_move_that_ends_where_the_one_at_work_ends_is_not_sent_again(void) {
 
 void test_a_move_that_ends_before_the_one_at_work_is_sent_at_once(void) {
     TEST_ASSERT_EQUAL(1, renewed(5000, 200, 0));
-    TEST_ASSERT_EQUAL(1, renewed(4959, 200, 20));
-    TEST_ASSERT_EQUAL(0, renewed(4939, 200, 20));
+    TEST_ASSERT_EQUAL(1, renewed(4974, 200, 20));
+    TEST_ASSERT_EQUAL(0, renewed(4950, 200, 20));
     TEST_ASSERT_EQUAL(1, renewed(300, 200, 20));
 }
 
