@@ -75,6 +75,12 @@ def test_a_test_that_bears_the_rule_in_its_name_is_added(tmp_path: Path) -> None
     assert list(gen_requirements.by_name(tmp_path, "S1")) == ["tests/unit/test_a.c::test_s1_is_kept"]
 
 
+def test_what_is_no_rule_gets_no_test_by_its_name(tmp_path: Path) -> None:
+    made(tmp_path)
+    (tmp_path / "tests/unit/test_a.c").write_text("void test_guard_is_off_by_default(void) {\n}\n")
+    assert list(gen_requirements.by_name(tmp_path, "guard")) == []
+
+
 def test_an_old_page_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("README.md", "DESIGN.md", "docs/requirements.md"):
         (tmp_path / name).parent.mkdir(exist_ok=True)
