@@ -400,8 +400,10 @@ static void weigh(argus_evidence_t *const self, const argus_knowledge_t *const k
     at->weighed = verdict != UNSEEN;
     count_own(self, knowledge, sonar, back, verdict);
     const bool tells = verdict == AGREED || verdict == CONTRADICTED;
-    const int32_t worth = worth_as(self, knowledge, sonar, at, tally, verdict);
-    if (tells && is_news(&self->pings[sonar], at, place_of(knowledge, tally))) {
+    const bool news = tells && is_news(&self->pings[sonar], at, place_of(knowledge, tally));
+    const bool weighs = news || verdict == CONTRADICTED;
+    const int32_t worth = weighs ? worth_as(self, knowledge, sonar, at, tally, verdict) : 0;
+    if (news) {
         count_news(self, knowledge, sonar, at, verdict, tally->against, worth);
     }
     if (fresh && verdict == AGREED &&
@@ -434,12 +436,8 @@ static void look_back(argus_evidence_t *const self, const argus_knowledge_t *con
 // The return of a sector: how far from the transducer, and how far aside of its axis.
 static argus_point_t seen_from(const argus_knowledge_t *const knowledge, const int sonar, const int sector) {
     const argus_sonar_pose_t from = argus_robot_pose(knowledge->robot, sonar);
-    const argus_sonar_pose_t laser = argus_robot_pose(knowledge->robot, sector);
-    const int32_t mm = knowledge->sonar[sector].reading_mm;
-    const argus_point_t way = {
-        laser.x_mm - from.x_mm + mm * argus_cos(laser.heading_deg * 100) / ARGUS_TRIG_ONE,
-        laser.y_mm - from.y_mm + mm * argus_sin(laser.heading_deg * 100) / ARGUS_TRIG_ONE};
-    return argus_in_frame(way, from.heading_deg * 100);
+    const argus_point_t at = argus_echo_robot(knowledge, sector);
+    return argus_in_frame((argus_point_t){at.x_mm - from.x_mm, at.y_mm - from.y_mm}, from.heading_deg * 100);
 }
 
 static bool returns_now(const argus_knowledge_t *const knowledge, const int sector) {
@@ -487,11 +485,10 @@ static int nearest_sector(const argus_knowledge_t *const knowledge, const int so
 
 // What it returns a sonar hears, or something nearer: that may be below the plane of the scan. So a laser
 // never contradicts what is nearer, and where it returns nothing it says nothing. A scan is many rays: it
-// counts for two.
-static void ask_laser(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
-                      const int sonar, const argus_ping_t *const now, tally_t *const tally) {
+// counts for two, the sector and one beside it.
+static void ask_laser(const argus_knowledge_t *const knowledge, const int sonar,
+                      const argus_ping_t *const now, tally_t *const tally) {
     int32_t mm = 0;
-    (void)self;
     if (argus_robot_sectors(knowledge->robot) == 0 || argus_robot_is_sector(knowledge->robot, sonar)) {
         return;
     }
@@ -502,7 +499,7 @@ static void ask_laser(const argus_evidence_t *const self, const argus_knowledge_
     const int32_t limit_mm = ARGUS_AGREE_MM + mm * ARGUS_AGREE_PERCENT / 100;
     if (now->reading_mm > mm + limit_mm) {
         add(tally, CONTRADICTED, sector, true);
-        tally->against |= (argus_mask_t)(1u << (sector + 1));
+        tally->against |= (argus_mask_t)(1u << (sector + 1 < knowledge->sonars ? sector + 1 : sector - 1));
     } else if (now->reading_mm >= mm - limit_mm) {
         add(tally, AGREED, sector, true);
     }
@@ -523,7 +520,7 @@ void argus_crosscheck_take(argus_evidence_t *const self, const argus_knowledge_t
             latest[i] = (uint8_t)ask(self, witness ? &tally : &unheard, &line, i, knowledge);
         }
     }
-    ask_laser(self, knowledge, sonar, now, &tally);
+    ask_laser(knowledge, sonar, now, &tally);
     weigh(self, knowledge, sonar, 1, &tally, true);
     look_back(self, knowledge, sonar, latest);
 }

@@ -6,9 +6,6 @@
 #include "awareness/numbers.h"
 #include "knowledge/knowledge.h"
 
-// Only builds that manage more than 16 sensors know a laser.
-#define ARGUS_LASER (ARGUS_SONARS > 16)
-
 // The values of the event LASER_FAULT.
 typedef enum {
     ARGUS_SCAN_SOUND,

@@ -142,8 +142,7 @@ static argus_ring_report_t check_sonars(const argus_ring_t *const ring, const in
 // Sectors of a laser's scan --------------------------------------------------------------------------------
 
 static bool is_managed(const int32_t sonars, const int32_t sectors) {
-    return sonars + sectors > 0 && sonars + sectors <= ARGUS_SONARS &&
-           (sectors == 0 || ARGUS_SONARS > 16); // a laser is for hosts
+    return sonars + sectors > 0 && sonars + sectors <= ARGUS_SONARS && (sectors == 0 || ARGUS_LASER);
 }
 
 // Sonars fill whole arrays of eight before them: no array has both.

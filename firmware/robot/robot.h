@@ -59,7 +59,7 @@ argus_mask_t argus_robot_polled(const argus_robot_t *self);  // all of the array
 argus_mask_t argus_robot_looking(const argus_robot_t *self); // that may cover for others
 argus_mask_t argus_robot_sectors(const argus_robot_t *self); // of a laser's scan
 static inline bool argus_robot_is_sector(const argus_robot_t *const self, const int sonar) {
-    return (self->sector_mask >> sonar & 1u) != 0;
+    return ARGUS_LASER && (self->sector_mask >> sonar & 1u) != 0;
 }
 bool argus_robot_faces_forward(const argus_robot_t *self, int sonar);
 bool argus_robot_looks_ahead(const argus_robot_t *self, int sonar); // it, or one of another deck

@@ -8,6 +8,9 @@
 
 _Static_assert(ARGUS_SONARS % 8 == 0 && ARGUS_SONARS >= 8 && ARGUS_SONARS <= 32, "8, 16, 24 or 32");
 
+// Only builds that manage more than 16 sensors know a laser.
+#define ARGUS_LASER (ARGUS_SONARS > 16)
+
 // Where and whither a sonar looks, robot frame.
 typedef struct {
     int16_t x_mm;
