@@ -390,11 +390,17 @@ static int32_t place_of(const argus_knowledge_t *const knowledge, const tally_t 
     return scan ? ARGUS_SCAN_PLACE_MM : ARGUS_PLACE_MM;
 }
 
+// A fresh echo that others bear out, also where a silence at this place has counted already.
+static void bear_out(argus_case_t *const c, const argus_ping_t *const at, const verdict_t verdict) {
+    if (verdict == AGREED && argus_ping_is_echo(at)) {
+        c->borne_out = c->borne_out || c->score[ARGUS_TEST_PEERS] > 0;
+    }
+}
+
 static void weigh(argus_evidence_t *const self, const argus_knowledge_t *const knowledge, const int sonar,
                   const int back, const tally_t *const tally, const bool fresh) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     ARGUS_ASSERT(back >= 1);
-    argus_case_t *const c = &self->of[sonar];
     argus_ping_t *const at = argus_pings_mark(&self->pings[sonar], back);
     const verdict_t verdict = verdict_of(tally);
     at->weighed = verdict != UNSEEN;
@@ -406,9 +412,8 @@ static void weigh(argus_evidence_t *const self, const argus_knowledge_t *const k
     if (news) {
         count_news(self, knowledge, sonar, at, verdict, tally->against, worth);
     }
-    if (fresh && verdict == AGREED &&
-        argus_ping_is_echo(at)) { // also where a silence of it has counted already
-        c->borne_out = c->borne_out || c->score[ARGUS_TEST_PEERS] > 0;
+    if (fresh) {
+        bear_out(&self->of[sonar], at, verdict);
     }
     if (verdict != DIVIDED) {
         weigh_lags(self, knowledge, sonar, back, verdict, worth);
