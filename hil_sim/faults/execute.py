@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable
 
 import numpy as np
 
-from hil_sim.faults.kinds import BumperHit, Fault, FaultChange, LinkFault, SonarFault, WheelFault
+from hil_sim.faults.kinds import BumperHit, Fault, FaultChange, LinkFault, SonarFault, WheelFault, When
 from hil_sim.sonar.params import MIN_MM, NO_ECHO_MM
 from hil_sim.world.model import Pose
 
@@ -107,6 +107,13 @@ class _Wheel:
         return [FaultChange(now_ms, "wheel", self.on, fault.text)]
 
 
+def _awaited(one: _State | _Wheel) -> When | None:
+    """What must come before it begins or ends."""
+    if one.ended:
+        return None
+    return one.fault.end if one.started else one.fault.start
+
+
 class FaultSet:
     """Executes the faults of sonars and wheels and the bumper hits of a run; link faults are left to the link."""
 
@@ -176,6 +183,20 @@ class FaultSet:
                 self._pressed[k] = pressed
                 changes.append(FaultChange(now_ms, "bumper", pressed, hit.text, segment=hit.segment))
         return changes
+
+    def waits(self, now_ms: float) -> list[When] | None:
+        """What must come before `update` has something to do; None: it has now."""
+        waiting: list[_State | _Wheel] = [*self._waiting, *self._wheels]
+        if self._mended or any(one.on != one.told for one in waiting):
+            return None
+        found = [when for one in waiting if (when := _awaited(one)) is not None]
+        bounds = [ms for hit in self._hits for ms in (hit.start_ms, hit.end_ms) if ms > now_ms]
+        return found + [When("t", 1, ms) for ms in bounds]
+
+    @property
+    def afflicted(self) -> int:
+        """Sonars that have or had faults, or will, as a mask."""
+        return sum(1 << number for number in self._afflicted)
 
     def active(self, number: int) -> SonarFault | None:
         """Return the fault that a sonar has now: of several the one written last."""

@@ -5,12 +5,12 @@ from __future__ import annotations
 
 import math
 import random
-from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
 from hil_sim.robot.interfaces import Body, Contact
+from hil_sim.robot.state import HISTORY, ChassisState
 from hil_sim.tables.robot import RobotTable
 from hil_sim.world.model import Pose
 from hil_sim.world.physics import PLAIN, Physics
@@ -19,7 +19,6 @@ from hil_sim.world.step import STEP_MS
 DEG: Final = math.pi / 180
 _TOUCH_RELEASE_MM: Final = 5.0
 _BISECTIONS: Final = 7
-_HISTORY: Final = 64
 _LOOK_MS: Final = 50
 SLIP_STRETCH_MM: Final = 100.0
 """For each stretch it is drawn whether the wheels slip on it."""
@@ -53,7 +52,7 @@ class Slip:
         return SLIP_GRIP if self._slips else 1.0
 
 
-class Chassis:
+class Chassis(ChassisState):
     """True pose and odometry of a body among solids.
 
     `on_hit(moved_in)` is called when the body meets a solid; `moved_in`: the solid came to it.
@@ -102,7 +101,13 @@ class Chassis:
         self.contact_rear = 0
         self._touching = False
         self.free_mm = 0.0
-        self._history: deque[tuple[float, float, float]] = deque([(self.x, self.y, self.th)], maxlen=_HISTORY)
+        self._places = self._kept
+        self._forget()
+
+    @property
+    def is_special(self) -> bool:
+        """Wheels may slip, or solids may move."""
+        return self._slip is not None or self._moving or not self._knows_free
 
     @property
     def pose(self) -> Pose:
@@ -116,26 +121,36 @@ class Chassis:
     def place(self, x_mm: float, y_mm: float, heading_deg: float) -> None:
         """Put the true robot elsewhere; odometry does not notice."""
         self.x, self.y, self.th = float(x_mm), float(y_mm), float(heading_deg)
-        self._history.clear()
-        self._history.append((self.x, self.y, self.th))
+        self._forget()
         self.free_mm = 0.0
         self._touching = False
         self.contact_front = self.contact_rear = 0
 
     def remember(self) -> None:
         """Note the pose at the end of a sub-step, for `pose_at`."""
-        self._history.append((self.x, self.y, self.th))
+        at = self._kept_at = (self._kept_at + 1) % HISTORY
+        self._places[3 * at], self._places[3 * at + 1], self._places[3 * at + 2] = self.x, self.y, self.th
+        self._kept_count = min(self._kept_count + 1, HISTORY)
+
+    def _forget(self) -> None:
+        """Let the history begin here."""
+        self._kept_count = 0
+        self.remember()
+
+    def _place(self, back: int) -> tuple[float, float, float]:
+        at = 3 * ((self._kept_at - back) % HISTORY)
+        return self._places[at], self._places[at + 1], self._places[at + 2]
 
     def pose_at(self, back_ms: float) -> Pose:
         """The true pose so long ago (up to 0.6 s), between sub-steps on a straight line."""
         if back_ms == 0:
             return self.pose
-        back = min(max(back_ms, 0.0) / STEP_MS, len(self._history) - 1.0)
+        back = min(max(back_ms, 0.0) / STEP_MS, self._kept_count - 1.0)
         k = int(back)
-        x, y, th = self._history[-1 - k]
+        x, y, th = self._place(k)
         part = back - k
         if part > 0:
-            x2, y2, th2 = self._history[-2 - k]
+            x2, y2, th2 = self._place(k + 1)
             x, y, th = x + (x2 - x) * part, y + (y2 - y) * part, th + (th2 - th) * part
         return Pose(x, y, wrapped(th))
 

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from functools import partial
 from typing import Final, NamedTuple
 
 from hil_sim.arcos import DEFAULT
 from hil_sim.robot.chassis import DEG, Chassis
 from hil_sim.robot.motion import approach, proportional, ramp
+from hil_sim.robot.state import DriveState, SettingsState
 from hil_sim.tables.robot import RobotTable
 from hil_sim.world.step import STEP_S
 
@@ -28,20 +28,14 @@ Law = Callable[[float, float, float, float, float], tuple[float, bool]]
 """How a place is approached: as `approach`."""
 
 
-@dataclass
-class Settings:
+class Settings(SettingsState):
     """Run-time values that return to FLASH on CLOSE and RESET."""
 
-    v_max: float
-    rv_max: float
-    accel: float
-    decel: float
-    raccel: float
-    rdecel: float
-    bumpstall: int = DEFAULT["BUMPSTALL"]
-    estall: bool = True
-    joydrive: bool = False
-    config: dict[str, int] = field(default_factory=dict)
+    def __init__(self, **limits: float) -> None:
+        super().__init__(bumpstall=DEFAULT["BUMPSTALL"], **limits)
+        self.estall = True
+        self.joydrive = False
+        self.config: dict[str, int] = {}
 
 
 def flash_settings(table: RobotTable) -> Settings:
@@ -66,11 +60,10 @@ class Step(NamedTuple):
     turned: bool
 
 
-class Drive:
+class Drive(DriveState):
     """Two channels, translation and rotation, each with a speed or a place as its set point.
 
-    v, w: speeds now, mm/s and deg/s. motors: powered; without power commands are not taken. wheels: the part that the
-    left and the right one turn of what they should.
+    v, w: speeds now, mm/s and deg/s. motors: powered; without power commands are not taken.
     """
 
     def __init__(self, chassis: Chassis, table: RobotTable) -> None:
@@ -87,6 +80,20 @@ class Drive:
         self._v_set = self._w_set = 0.0
         self._move_left = self._head_left = 0.0
         self._head_set = 0.0
+
+    @property
+    def wheels(self) -> tuple[float, float]:
+        """The part that the left and the right wheel turn of what they should."""
+        return self._left_part, self._right_part
+
+    @wheels.setter
+    def wheels(self, parts: tuple[float, float]) -> None:
+        self._left_part, self._right_part = parts
+
+    @property
+    def is_plain(self) -> bool:
+        """Places are approached as the robot does it."""
+        return self._move_law is approach and self._head_law is approach
 
     def approach_proportionally(self) -> None:
         """End MOVE and HEAD slower and slower from now on, as the vendor's emulator does, not as a trapezoid."""
@@ -210,12 +217,11 @@ class Drive:
     def wheel_speeds(self) -> tuple[float, float]:
         """Left and right, mm/s."""
         half = self.w * DEG * self._track_mm / 2
-        left, right = self.wheels
-        return (self.v - half) * left, (self.v + half) * right
+        return (self.v - half) * self._left_part, (self.v + half) * self._right_part
 
     def _as_wheels_turn(self, ds: float, dth: float) -> tuple[float, float]:
         """What is made of a step by wheels that turn less than they should: the encoders see it so as well."""
-        left, right = self.wheels
+        left, right = self._left_part, self._right_part
         if left == right == 1.0:
             return ds, dth
         half = dth * DEG * self._track_mm / 2

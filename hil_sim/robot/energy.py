@@ -4,29 +4,23 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Final
 
+from hil_sim.robot.state import EnergyState
 from hil_sim.tables import load
 
 _ENERGY: Final = load("energy")
 _IDLE_W: Final[float] = _ENERGY["power"]["idle_w"]
 _SONAR_W: Final[float] = _ENERGY["power"]["sonar_w"]
 _WHEEL_J_M: Final[float] = _ENERGY["power"]["wheel_j_per_m"]
-_ACCEL_FACTOR: Final[float] = _ENERGY["power"]["accel_factor"]
-_MASS_KG: Final[float] = _ENERGY["inertia"]["mass_kg"]
-_INERTIA_KG_M2: Final[float] = _ENERGY["inertia"]["turn_kg_m2"]
+ACCEL_FACTOR: Final[float] = _ENERGY["power"]["accel_factor"]
+MASS_KG: Final[float] = _ENERGY["inertia"]["mass_kg"]
+INERTIA_KG_M2: Final[float] = _ENERGY["inertia"]["turn_kg_m2"]
 _BATTERY: Final[dict[str, float]] = _ENERGY["battery"]
 
 
-@dataclass
-class Energy:
+class Energy(EnergyState):
     """Energy account; kept apart so that the idle power can be rescaled afterwards."""
-
-    idle_s: float = 0.0
-    sonar_s: float = 0.0
-    wheel_m: float = 0.0
-    accel_j: float = 0.0
 
     @property
     def total_j(self) -> float:
@@ -36,10 +30,10 @@ class Energy:
     def drive(self, wheels_mm: float, v: float, w: float, v_old: float, w_old: float) -> None:
         """Account for one sub-step: the path of both wheels, and speeds now and before (mm/s, deg/s)."""
         self.wheel_m += wheels_mm / 1000
-        turning = _INERTIA_KG_M2 * (w * w - w_old * w_old) * math.radians(1) ** 2 / 2
-        gained = _MASS_KG * (v * v - v_old * v_old) / 2e6 + turning
+        turning = INERTIA_KG_M2 * (w * w - w_old * w_old) * math.radians(1) ** 2 / 2
+        gained = MASS_KG * (v * v - v_old * v_old) / 2e6 + turning
         if gained > 0:
-            self.accel_j += gained * _ACCEL_FACTOR
+            self.accel_j += gained * ACCEL_FACTOR
 
     def battery_v(self, sonar_on: bool, wheels_mm_s: float) -> float:
         """Terminal voltage: falls with the charge used and with the load of now."""

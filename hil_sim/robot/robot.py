@@ -17,6 +17,8 @@ from hil_sim.robot.drive import Drive, Step, flash_settings
 from hil_sim.robot.energy import Energy
 from hil_sim.robot.interfaces import Body, Faults, Moving, Ring, SonarReading
 from hil_sim.robot.stall import StallMonitor
+from hil_sim.robot.state import RobotState
+from hil_sim.robot.ticks import Parts, Ticks, ticks_of
 from hil_sim.tables.robot import RobotTable, robot_table
 from hil_sim.world.model import Pose
 from hil_sim.world.physics import PLAIN, Physics
@@ -29,7 +31,7 @@ _STALLS_FRONT: Final = BUMPSTALL["FRONT"]
 _STALLS_REAR: Final = BUMPSTALL["REAR"]
 
 
-class Robot:
+class Robot(RobotState):
     """A robot in a world: commands in, true pose, odometry and sonar readings out.
 
     drive: what the motion commands act on. chassis: where the robot is and what it meets. stall: the stall monitor.
@@ -98,6 +100,8 @@ class Robot:
         self._logged_bumpers = 0
         self._watchdog_logged = False
         ring.enabled[:] = [False] * len(ring.enabled)
+        parts = Parts(self, table, self.drive, self.chassis, self.stall, self.energy, ring, faults)
+        self._ticks: Ticks | None = ticks_of(parts)
 
     # ---- commands
 
@@ -112,7 +116,7 @@ class Robot:
         self._to_flash()
         self.set_origin()
         self.sonar(1)
-        self._readings.clear()
+        self._forget_readings()
 
     def close(self) -> None:
         """End a session: motors and sonar off, FLASH values back."""
@@ -120,7 +124,7 @@ class Robot:
         self.enable(False)
         self.sonar(0)
         self._to_flash()
-        self._readings.clear()
+        self._forget_readings()
 
     def _to_flash(self) -> None:
         self.drive.settings = flash_settings(self.table)
@@ -222,6 +226,16 @@ class Robot:
             self._debt_ms -= STEP_MS
             self.step()
 
+    def run(self, stop_ms: float, limit_ms: float) -> None:
+        """Let sub-steps pass until `stop_ms`, none beyond `limit_ms`."""
+        while self.now_ms + STEP_MS <= limit_ms:
+            ticks = self._in_c()
+            if ticks is not None and ticks.run(stop_ms, limit_ms):
+                return
+            self.step()
+            if self.now_ms >= stop_ms:
+                return
+
     def step(self) -> None:
         """Let one sub-step pass."""
         self.now_ms += STEP_MS
@@ -316,10 +330,24 @@ class Robot:
     def fire_all(self) -> None:
         """Let every sonar fire now, as no real array does; the next SIP has all their readings."""
         if self.sonar_on:
-            self._readings.clear()
+            self._forget_readings()
             self._hear(self.ring.fire_all(self.now_ms, self.pose))
 
+    def _in_c(self) -> Ticks | None:
+        """What lets sub-steps pass in C, if that may be."""
+        return self._ticks if self.log is None else None
+
+    def _forget_readings(self) -> None:
+        self._gather()
+        self._readings.clear()
+
+    def _gather(self) -> None:
+        """Take what C has heard."""
+        if self._ticks is not None:
+            self._readings += self._ticks.heard()
+
     def _hear(self, readings: Sequence[SonarReading]) -> None:
+        self._gather()
         self._readings += readings
         if self.log is not None:
             for reading in readings:
@@ -328,6 +356,7 @@ class Robot:
 
     def take_readings(self) -> list[SonarReading]:
         """Return the readings completed since the last call."""
+        self._gather()
         readings, self._readings = self._readings, []
         return readings
 

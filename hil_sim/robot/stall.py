@@ -4,17 +4,12 @@
 from __future__ import annotations
 
 from hil_sim.arcos import DEFAULT, TIMING
+from hil_sim.robot.state import StallState
 from hil_sim.world.step import STEP_MS
 
 
-class StallMonitor:
+class StallMonitor(StallState):
     """Which wheels are stalled now, and which were since the last SIP."""
-
-    def __init__(self) -> None:
-        self.left = self.right = False
-        self._seen_left = self._seen_right = False
-        self._blocked_ms = 0
-        self._relax_until_ms = 0
 
     def is_relaxing(self, now_ms: int) -> bool:
         """The wheels are without drive after a stall."""

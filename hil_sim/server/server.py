@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import enum
 import logging
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Any, Final
@@ -143,7 +144,7 @@ class ArcosServer:
                 self._packet(packet)
         robot = self.robot
         while robot.now_ms + STEP_MS <= now_ms:
-            robot.step()
+            robot.run(self._next_sip_ms if self.state is State.CONNECTED else math.inf, now_ms)
             if self.state is State.CONNECTED and robot.now_ms >= self._next_sip_ms:
                 self._next_sip_ms += self.sip_cycle_ms
                 self._send_sip()

@@ -12,6 +12,7 @@ from hil_sim.faults.execute import FaultSet
 from hil_sim.faults.kinds import FaultChange
 from hil_sim.robot.interfaces import SonarReading
 from hil_sim.robot.robot import Robot
+from hil_sim.robot.ticks import Ticks
 from hil_sim.sil.outcome import Collision, FaultTruth
 from hil_sim.world.model import Pose
 
@@ -40,6 +41,9 @@ class NotedRobot(Robot):
         if self.watch is not None:
             news, self._news = self._news, []
             self.watch(news)
+
+    def _in_c(self) -> Ticks | None:
+        return super()._in_c() if self.watch is None else None
 
     def _hear(self, readings: Sequence[SonarReading]) -> None:
         super()._hear(readings)

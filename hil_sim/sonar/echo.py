@@ -74,6 +74,15 @@ class EchoModel:
         rays = {f"ray_{name}": getattr(self, f"_ray_{name}")[order] for name in ("cos", "sin", "db")}
         return kernel.Kernel(numbers, rays | {"mount": mount})
 
+    @property
+    def handle(self) -> int | None:
+        """The same model in C, if there is one."""
+        return self._kernel.handle if self._kernel is not None else None
+
+    def learn(self, x_mm: float, y_mm: float) -> None:
+        """Let C know the cell of a place."""
+        self._patch(x_mm, y_mm)
+
     def ping_mm(
         self,
         number: int,

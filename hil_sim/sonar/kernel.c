@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The echo model of hil_sim/sonar/echo.py in C: same sums in the same order, so the same millimetres.
+#include "echo.h"
+
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -8,13 +10,13 @@
 
 // What is heard from one grid cell of a world, or what moves in it. The arrays are the caller's and must
 // stay. `inverse` holds four values for each corner; `retro` is 1 for one that can send sound back.
-typedef struct {
+struct patch {
     double *ax, *ay, *ex, *ey;
     const double *length, *mirror;
     double *corner_x, *corner_y;
     const double *inverse, *retro;
     int32_t segments, corners;
-} patch_t;
+};
 
 // What can lie within a cone that looks into one part of the compass from anywhere in a cell.
 typedef struct {
@@ -42,15 +44,15 @@ typedef struct {
     double least; // no point of it is nearer
 } near_t;
 
-typedef struct {
+struct echo {
     model_t model;
     slot_t *slots;
     uint32_t capacity, used; // capacity: a power of two
     near_t *near;
     int32_t room;
-} echo_t;
+};
 
-enum { UNKNOWN_CELL = -1, NO_MEMORY = -2, FIRST_CAPACITY = 64, SECTORS = 24 };
+enum { FIRST_CAPACITY = 64, SECTORS = 24 };
 
 typedef struct {
     double x, y, c, s;
@@ -70,12 +72,10 @@ void argus_sim_place(patch_t *here, const patch_t *shape, const int32_t *owner, 
                      const double *places);
 int32_t argus_sim_echo_range(echo_t *self, double x, double y, double heading_deg, double gain_db,
                              const patch_t *others);
-int32_t argus_sim_echo_ping(echo_t *self, int32_t sonar, double x, double y, double heading_deg,
-                            double angle_deg, double gain_db, const patch_t *others);
 uint32_t argus_sim_version(void);
 
 uint32_t argus_sim_version(void) {
-    return 4;
+    return 5;
 }
 
 static const double deg_per_rad = 180.0 / 3.14159265358979323846;

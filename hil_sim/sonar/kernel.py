@@ -14,7 +14,7 @@ from hil_sim.errors import SimError
 
 LIBRARY_VARIABLE: Final = "ARGUS_SIM_KERNEL"
 """Names the library to load, or is `off`."""
-VERSION: Final = 4
+VERSION: Final = 5
 UNKNOWN_CELL: Final = -1
 _NO_MEMORY: Final = -2
 _ROOT: Final = Path(__file__).resolve().parents[2]
@@ -62,6 +62,7 @@ _FUNCTIONS: Final[dict[str, tuple[Any, tuple[Any, ...]]]] = {
     ),
     "argus_sim_place": (None, (ctypes.c_void_p,) * 5),
     "argus_sim_echo_range": (ctypes.c_int32, (_HANDLE, *_PLACE, ctypes.c_double, ctypes.c_void_p)),
+    "argus_sim_run": (ctypes.c_bool, (ctypes.c_void_p, ctypes.c_double, ctypes.c_double)),
     "argus_sim_echo_ping": (
         ctypes.c_int32,
         (_HANDLE, ctypes.c_int32, *_PLACE, ctypes.c_double, ctypes.c_double, ctypes.c_void_p),
@@ -131,25 +132,25 @@ class Kernel:
         found = library()
         assert found is not None
         self._library = found
-        self._handle = None
+        self.handle: int | None = None
         self._arrays = [arrays[name] for name in _MODEL_ARRAYS]
         self._patches: list[Patch] = []
         pointers = [array.ctypes.data for array in self._arrays]
         values = [numbers[name] for name in _NUMBERS]
         model = _Model(*values, *pointers, len(arrays["ray_cos"]), len(arrays["mount"]))
-        self._handle = found.argus_sim_echo_new(ctypes.byref(model))
-        if not self._handle:
+        self.handle = found.argus_sim_echo_new(ctypes.byref(model))
+        if not self.handle:
             raise MemoryError
         self._range, self._ping = found.argus_sim_echo_range, found.argus_sim_echo_ping
 
     def __del__(self) -> None:
-        if self._handle:
-            self._library.argus_sim_echo_free(self._handle)
+        if self.handle:
+            self._library.argus_sim_echo_free(self.handle)
 
     def add(self, cell: Sequence[int], patch: Patch) -> None:
         """Tell what is heard from a cell."""
         self._patches.append(patch)
-        if self._library.argus_sim_echo_add(self._handle, *cell, patch.address):
+        if self._library.argus_sim_echo_add(self.handle, *cell, patch.address):
             raise MemoryError
 
     def range_mm(
@@ -157,7 +158,7 @@ class Kernel:
     ) -> int:
         """Return the range from a transducer at this place, UNKNOWN_CELL when `add` is needed first."""
         address = others.address if others is not None else None
-        value = int(self._range(self._handle, x_mm, y_mm, heading_deg, gain_db, address))
+        value = int(self._range(self.handle, x_mm, y_mm, heading_deg, gain_db, address))
         if value == _NO_MEMORY:
             raise MemoryError
         return value
@@ -174,4 +175,4 @@ class Kernel:
     ) -> int:
         """Return the range of one of the robot's sonars, its axis turned, its gain off; as `range_mm`."""
         address = others.address if others is not None else None
-        return int(self._ping(self._handle, number, x_mm, y_mm, heading_deg, angle_deg, gain_db, address))
+        return int(self._ping(self.handle, number, x_mm, y_mm, heading_deg, angle_deg, gain_db, address))

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 from typing import Any, Final, NamedTuple, Protocol, SupportsIndex
 
 import numpy as np
@@ -15,15 +14,14 @@ from hil_sim.sonar.echo import EchoModel
 from hil_sim.sonar.params import MIN_MM, NO_ECHO_MM, Reading, SonarParams, transducer_pose
 from hil_sim.sonar.patch import MovingEchoes
 from hil_sim.sonar.rough import Roughness
+from hil_sim.sonar.state import ARRAYS, MAX_ORDER, ArrayState, RingState
 from hil_sim.tables.robot import RobotTable, robot_table
 from hil_sim.world.model import Pose, World
 from hil_sim.world.moving import MovingSolids
 
 PER_ARRAY: Final = TIMING["TRANSDUCERS_PER_ARRAY"]
-ARRAYS: Final = TIMING["ARRAYS_MAX"]
-MAX_ORDER: Final = TIMING["POLLING_MAX_PER_ARRAY"]
 SOUND_MM_MS: Final = 343.0
-_RESUME_MS: Final = 1000.0
+RESUME_MS: Final = 1000
 
 
 class SonarFaults(Protocol):
@@ -73,19 +71,7 @@ class _Ping(NamedTuple):
     late: float = 1.0
 
 
-@dataclass
-class _Array:
-    """The firing state of one array."""
-
-    order: list[int]
-    place: int = 0
-    next_ms: float | None = None
-    last_ms: float = -math.inf
-    last_number: int = -1
-
-
-def _next_ms(state: _Array) -> float:
-    assert state.next_ms is not None
+def _next_ms(state: ArrayState) -> float:
     return state.next_ms
 
 
@@ -93,7 +79,7 @@ def _completion_ms(reading: Reading) -> float:
     return reading.t_ms
 
 
-class SonarRing:
+class SonarRing(RingState):
     """The arrays of a robot: every `cycle_ms` each enabled array fires its next transducer.
 
     enabled: one switch for each array that ARCOS knows; switches of arrays that are not fitted do nothing.
@@ -123,16 +109,19 @@ class SonarRing:
         self.echoes = echoes if echoes is not None else EchoModel(world, self.params, self._table)
         self.faults = faults
         self.cycle_ms = self._table.cycle_ms
-        rng = rng if rng is not None else np.random.default_rng(0)
+        self.rng = rng = rng if rng is not None else np.random.default_rng(0)
         self._normal: Callable[[], float] = rng.standard_normal
         self._random: Callable[[], float] = rng.random
         self._enabled = _Switches([True] * self._fitted + [False] * (ARRAYS - self._fitted))
-        self._arrays = [self._default(array) for array in range(self._fitted)]
+        self._arrays = [self._states[array] for array in range(self._fitted)]
+        for state, order in zip(self._arrays, self._table.orders, strict=True):
+            state.begin(order)
         self._rough = rough
         self._quiet = False
-        self._last_ms: float | None = None
+        self._last_ms = math.nan
         self._pending: list[Reading] = []
-        self._live: list[_Array] = []
+        self._live: list[ArrayState] = []
+        self._kinds: list[str | None] = [None]
         self._fire_ms = -math.inf
         self._ready_ms = math.inf
         self._moving = moving
@@ -148,16 +137,12 @@ class SonarRing:
     def enabled(self, values: Sequence[bool]) -> None:
         self._enabled[:] = list(values)
 
-    def _default(self, array: int) -> _Array:
-        return _Array(list(self._table.orders[array]))
-
     def reset(self) -> None:
         """Return to the power-up firing order and cycle; the switches stay."""
         self.cycle_ms = self._table.cycle_ms
         self._quiet = False
-        for array, state in enumerate(self._arrays):
-            state.order = self._default(array).order
-            state.place = 0
+        for state, order in zip(self._arrays, self._table.orders, strict=True):
+            state.order = list(order)
 
     def set_polling(self, numbers: Sequence[int]) -> None:
         """Take a POLLING string: transducers 1 to 32 in firing order.
@@ -172,7 +157,7 @@ class SonarRing:
         for array, state in enumerate(self._arrays):
             order = [number for number in named if number // PER_ARRAY == array][:MAX_ORDER]
             if order:
-                state.order, state.place = order, 0
+                state.order = order
 
     def advance(self, now_ms: float, pose_at: Callable[[float], Pose]) -> list[Reading]:
         """Fire what is due up to `now_ms`; return the readings whose echo is in, oldest first.
@@ -181,7 +166,9 @@ class SonarRing:
         up for: firing resumes now.
         """
         last_ms, self._last_ms = self._last_ms, now_ms
-        if last_ms is not None and now_ms - last_ms > _RESUME_MS:
+        if self._under_way.count:
+            self._take_back()
+        if now_ms - last_ms > RESUME_MS:
             self._restart(range(self._fitted))
         if self._enabled.touched:
             self._take_switches()
@@ -194,12 +181,41 @@ class SonarRing:
         ready.sort(key=_completion_ms)
         return ready
 
+    # ---- C
+
+    @property
+    def is_plain(self) -> bool:
+        """Pings are as the plain model has them, apart from faults."""
+        return self._rough is None and self._moving is None
+
+    @property
+    def switched(self) -> bool:
+        """An array was switched, which the next sub-step has to note."""
+        return self._enabled.touched
+
+    def hand_over(self) -> None:
+        """Let C go on with the readings under way."""
+        if self._pending:
+            self._under_way.put(self._pending, self._kinds)
+            self._pending.clear()
+
+    def take_heard(self) -> list[Reading]:
+        """Return the readings that C has brought in since the last call."""
+        return self._in.take(self._kinds) if self._in.count else []
+
+    def _take_back(self) -> None:
+        """Go on with the readings under way that C has left."""
+        self._pending += self._under_way.take(self._kinds)
+
     def _take_switches(self) -> None:
         """Note which arrays fire from now on."""
         self._restart(array for array in self._enabled.cut if array < self._fitted)
         self._enabled.cut.clear()
         self._enabled.touched = False
-        self._live = [state for array, state in enumerate(self._arrays) if self._enabled[array]]
+        live = [array for array in range(self._fitted) if self._enabled[array]]
+        self._live = [self._arrays[array] for array in live]
+        self._live_at[: len(live)] = [*live]
+        self._lives = len(live)
         self._fire_ms = -math.inf
 
     def _wait_for(self, pending: list[Reading]) -> None:
@@ -209,7 +225,7 @@ class SonarRing:
     def _fire_due(self, now_ms: float, pose_at: Callable[[float], Pose]) -> None:
         live = self._live
         for state in live:
-            if state.next_ms is None:
+            if math.isnan(state.next_ms):
                 state.next_ms = now_ms
         while live:
             first = min(live, key=_next_ms)
@@ -227,7 +243,7 @@ class SonarRing:
         readings = []
         for array in range(self._fitted):
             if self._enabled[array]:
-                for number in self._default(array).order:
+                for number in self._table.orders[array]:
                     readings += self._fire_one(number, now_ms, pose)
         return readings
 
@@ -247,17 +263,17 @@ class SonarRing:
 
     def _restart(self, arrays: Iterable[int]) -> None:
         for array in arrays:
-            self._arrays[array].next_ms = None
+            self._arrays[array].next_ms = math.nan
             low = array * PER_ARRAY
             self._wait_for([r for r in self._pending if not low <= r.number < low + PER_ARRAY])
         self._fire_ms = -math.inf
 
-    def _fire(self, state: _Array, t_ms: float, pose_at: Callable[[float], Pose]) -> None:
+    def _fire(self, state: ArrayState, t_ms: float, pose_at: Callable[[float], Pose]) -> None:
         state.next_ms = t_ms + self.cycle_ms
         if self._quiet:
             return
-        number = state.order[state.place]
-        state.place = (state.place + 1) % len(state.order)
+        number = state.due
+        state.place = (state.place + 1) % state.count
         state.last_ms, state.last_number = t_ms, number
         pose = pose_at(t_ms)
         true_mm = self.true_range(number, pose)
@@ -279,7 +295,7 @@ class SonarRing:
             if ready_ms < self._ready_ms:
                 self._ready_ms = ready_ms
 
-    def _draw(self, state: _Array, number: int, t_ms: float, pose: Pose) -> _Ping:
+    def _draw(self, state: ArrayState, number: int, t_ms: float, pose: Pose) -> _Ping:
         """Draw what a ping needs: always as much, so that a fault or a world changes no later draw."""
         noise, chance, where = self._normal(), self._random(), self._random()
         if self._rough is None:
@@ -303,7 +319,7 @@ class SonarRing:
         gain_db = self._rough.gain_db[number] if self._rough is not None else 0.0
         return self.echoes.ping_mm(number, pose, angle_deg, self._moving_echoes, gain_db)
 
-    def _others_mm(self, rough: Roughness, mine: _Array, t_ms: float, pose: Pose) -> float:
+    def _others_mm(self, rough: Roughness, mine: ArrayState, t_ms: float, pose: Pose) -> float:
         """Return at which range the ping of another array of this moment would be heard, at the nearest."""
         found = math.inf
         if not rough.physics.cross_array:
@@ -319,8 +335,8 @@ class SonarRing:
         return found
 
     @staticmethod
-    def _due(state: _Array, t_ms: float) -> int | None:
-        return state.order[state.place] if state.next_ms == t_ms else None
+    def _due(state: ArrayState, t_ms: float) -> int | None:
+        return state.due if state.next_ms == t_ms else None
 
     def _heard(self, ping: _Ping, true_mm: int, angle_deg: float) -> int:
         """Add what a real ping adds: roughness, noise, another sonar's ping, and an echo after the next firing."""

@@ -28,6 +28,7 @@ from hil_sim.arcos import (
     frame,
 )
 from hil_sim.conformance import client, sonar_checks
+from hil_sim.robot.state import SettingsState
 from hil_sim.server import commands
 from hil_sim.server.commands import IGNORED, IGNORED_RANGES, NAME, WHY_IGNORED
 from hil_sim.server.server import ArcosServer, State
@@ -60,9 +61,9 @@ def snapshot(server: ArcosServer) -> Snapshot:
     """All that a command can change, by name."""
     robot, ring = server.robot, server.robot.ring
     assert isinstance(ring, FakeRing)
-    settings = {
-        f"set {name}": value for name, value in vars(robot.drive.settings).items() if name != "config"
-    }
+    now = robot.drive.settings
+    limits = {name: getattr(now, name) for name, *_ in SettingsState._fields_}
+    settings = {f"set {name}": value for name, value in (limits | vars(now)).items() if name != "config"}
     parts: dict[str, tuple[Any, tuple[str, ...]]] = {
         "robot": (robot, ("anport", "digout", "battery_test_dv")),
         "speeds": (robot.drive, ("v", "w", "motors", "_move_mode", "_head_mode", "_vel2")),
