@@ -255,6 +255,21 @@ FLOWS: Final[dict[str, Flow | Bytes]] = {
             ("its tests", "a gap fails the build", ""),
         ),
     ),
+    "trust": Flow(
+        (
+            ("unit tests", "proofs, analysers", "monitor S1 to S8"),
+            ("firmware/",),
+            ("a figure\neach by a command",),
+            ("below its floor\nthe build fails",),
+        ),
+        (
+            ("unit tests", "firmware/", ""),
+            ("proofs, analysers", "firmware/", ""),
+            ("monitor S1 to S8", "firmware/", ""),
+            ("firmware/", "a figure", ""),
+            ("a figure", "below its floor", ""),
+        ),
+    ),
     "safety-monitor": Flow(
         (
             ("truth", "wire, both directions", "events"),

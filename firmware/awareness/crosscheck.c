@@ -446,9 +446,8 @@ static argus_point_t seen_from(const argus_knowledge_t *const knowledge, const i
 }
 
 static bool returns_now(const argus_knowledge_t *const knowledge, const int sector) {
-    return sector < knowledge->sonars && argus_robot_is_sector(knowledge->robot, sector) &&
-           (knowledge->fresh >> sector & 1u) != 0 && !argus_is_out(knowledge, sector) &&
-           knowledge->sonar[sector].reading_mm < ARGUS_NO_ECHO_MM;
+    return argus_robot_is_sector(knowledge->robot, sector) && (knowledge->fresh >> sector & 1u) != 0 &&
+           !argus_is_out(knowledge, sector) && knowledge->sonar[sector].reading_mm < ARGUS_NO_ECHO_MM;
 }
 
 // No sector beside it has something nearer: what it returns is the foot of a wall, or a thing that stands

@@ -11,6 +11,7 @@ from typing import Final
 from devtool import commands, docs, firmware, packaging
 from devtool.base import Stop, leave_at_sigterm
 from devtool.cmake import presets
+from devtool.coverage import do_coverage
 from devtool.linting import LINT_STAGES, format_stages
 from devtool.setup import leave_venv
 from devtool.stages import add_stage_options, staged_command
@@ -103,11 +104,18 @@ def add_making(add: Add) -> None:
         "build", commands.do_build, f"build presets: {', '.join(presets())}", "build\nbuild release m32"
     )
     builder.add_argument("preset", metavar="PRESET", nargs="*", help="what to build (default: release)")
-    add(
+    reached = add(
         "coverage",
-        commands.do_coverage,
-        "measure the line and branch coverage of the C unit tests",
-        "coverage",
+        do_coverage,
+        "measure which lines and branches of firmware/ its C unit tests reach",
+        "coverage\ncoverage --mcdc\ncoverage --hil",
+    )
+    how = reached.add_mutually_exclusive_group()
+    how.add_argument(
+        "--mcdc", action="store_true", help="by clang 18 or later: what each condition decides by itself, too"
+    )
+    how.add_argument(
+        "--hil", action="store_true", help="hal/ and argusd, too, with all tests, those over ptys included"
     )
     add("size", commands.do_size, "print text, RAM per instance and worst stack on Cortex-M4", "size")
     add("api", commands.do_api, "make the pages of the public header, build/api/index.html", "api")

@@ -19,7 +19,7 @@ BOARDS: Final = ("mps2-an386", "stm32f405")
 """The presets that make an image of a microcontroller."""
 ELSEWHERE: Final = ("blank", "mps2-tests", "stm32f405-tests", "big-endian")
 """Those whose programs run on another machine."""
-WITHOUT_ARGUSD: Final = ("m32", "cortex-m4", *BOARDS, *ELSEWHERE)
+WITHOUT_ARGUSD: Final = ("m32", "cortex-m4", "coverage", "mcdc", *BOARDS, *ELSEWHERE)
 SOAK: Final = "soak"
 """The label of the unit tests that compute for long; they are run once, in the release build."""
 WAITING: Final = 2
@@ -37,26 +37,27 @@ def presets() -> tuple[str, ...]:
     return tuple(one["name"] for one in content["buildPresets"])
 
 
-def configure(preset: str, run: Run) -> None:
-    """Configure PRESET if it is new, was configured elsewhere, or the presets changed."""
+def configure(preset: str, run: Run, compiler: str = "") -> None:
+    """Configure PRESET if it is new, was configured elsewhere, or the presets or its own COMPILER changed."""
     folder = BUILD / preset
     cache, stamp = folder / "CMakeCache.txt", folder / "preset-digest"
     inputs = [PRESETS_FILE, ROOT / "cmake/cortex-m4.cmake", ROOT / "cmake/s390x.cmake"]
-    recipe = hashlib.sha256(b"".join(path.read_bytes() for path in inputs)).hexdigest()
+    recipe = hashlib.sha256(b"".join(path.read_bytes() for path in inputs) + compiler.encode()).hexdigest()
     if cache.exists() and f"CMAKE_HOME_DIRECTORY:INTERNAL={ROOT}\n" not in cache.read_text():
         shutil.rmtree(folder)
     if cache.exists() and (folder / "CMakeFiles").exists() and stamp.exists() and stamp.read_text() == recipe:
         return
     # A test of argusd that is left out because inih is missing would be a silent skip.
     extra = [] if preset in WITHOUT_ARGUSD else ["-DARGUS_ARGUSD=ON", "-DARGUS_TUI=ON"]
+    extra += [f"-DCMAKE_C_COMPILER={compiler}"] if compiler else []
     run(["cmake", "--fresh", "--preset", preset, *extra])
     stamp.write_text(recipe)
 
 
-def build(preset: str, run: Run, settings: Sequence[str] = ()) -> None:
+def build(preset: str, run: Run, settings: Sequence[str] = (), compiler: str = "") -> None:
     """Configure and build PRESET; SETTINGS of CMake (NAME=VALUE) are kept until others are given."""
     with alone(), making():
-        configure(preset, run)
+        configure(preset, run, compiler)
         if settings:
             run(["cmake", BUILD / preset, *(f"-D{setting}" for setting in settings)])
         run(["cmake", "--build", "--preset", preset, "-j", str(CORES)])

@@ -28,7 +28,7 @@ from devtool.base import (
     say,
     shown,
 )
-from devtool.cmake import build, build_and_test, presets
+from devtool.cmake import build, presets
 from devtool.setup import ensure
 from devtool.stages import STAGE_LIMIT_S, StageFailed, logged_runner, tail_of
 
@@ -134,21 +134,6 @@ def do_shell(args: argparse.Namespace) -> int:
         os.execvpe(command[0], command, env)
     except OSError as error:
         raise Stop(f"{command[0]}: {error.strerror}", EXIT_USAGE) from None
-
-
-def do_coverage(_args: argparse.Namespace) -> int:
-    """Measure what the unit tests cover."""
-    ensure(["coverage"])
-    for stale in (BUILD / "coverage").rglob("*.gcda"):
-        stale.unlink()
-    quietly("building and running the C unit tests", lambda run: build_and_test("coverage", run, ()))
-    gcovr: list[str | Path] = [VENV / "bin/gcovr", "--root", ROOT, "--object-directory", BUILD / "coverage"]
-    filters = ["--filter", "firmware/", "--filter", "hal/"]
-    html = BUILD / "coverage/html/index.html"
-    html.parent.mkdir(exist_ok=True)
-    run_visibly([*gcovr, *filters, "--txt", "-", "--txt-summary", "--html-details", html, BUILD / "coverage"])
-    say(f"line by line: {shown(html)}")
-    return 0
 
 
 def do_size(_args: argparse.Namespace) -> int:

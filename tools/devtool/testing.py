@@ -11,6 +11,7 @@ from typing import Final
 from devtool.base import BUILD, CORES, ROOT, VENV, Command, Run
 from devtool.browser import monitor_tests
 from devtool.cmake import BOARDS, SOAK, TOUR, WIDE, build, build_and_test, ctest
+from devtool.coverage import coverage_stage, mcdc_stage
 from devtool.docs import site_tests
 from devtool.packaging import NEEDS as PACKAGE_NEEDS
 from devtool.packaging import package_tests
@@ -161,6 +162,11 @@ SOAK_STAGES: Final = (
         ("release", "sanitize"),
     ),
     Stage(
+        "mcdc",
+        "what each condition of firmware/ decides by itself in the C unit tests, where clang can count it",
+        mcdc_stage,
+    ),
+    Stage(
         "fuzz",
         "manager, guard port and robot under the monitor of S1 to S8, a million inputs",
         fuzz_tests,
@@ -176,6 +182,12 @@ TEST_STAGES: Final = (
         "sanitize", "C unit tests, built by clang with its address and undefined-behaviour sanitizers"
     ),
     ctest_stage("m32", "C unit tests, 32 bit"),
+    Stage(
+        "coverage",
+        "lines and branches of firmware/ that its C unit tests reach, against tests/coverage.toml",
+        coverage_stage,
+        ("coverage",),
+    ),
     CORTEX_M4,
     PYTHON,
     Stage(

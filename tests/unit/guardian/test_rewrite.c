@@ -112,3 +112,73 @@ void test_what_was_heard_by_one_that_is_out_too_covers_nothing(void) {
     }
     TEST_ASSERT_EQUAL_INT32(0, argus_rewrite_cover_mm(&robot.argus, 3));
 }
+
+// ---- analog ports: a client sees the one that it has chosen
+
+static argus_analog_t analog;
+
+static void shows(uint8_t robots_port, uint8_t port, uint8_t value) {
+    const argus_rewrite_t how = {.readings = ARGUS_READINGS_PASS, .arrays = 15, .analog = &analog};
+    uint8_t data[sizeof sip];
+    memcpy(data, sip, sizeof sip);
+    data[33] = robots_port;
+    TEST_ASSERT_EQUAL_size_t(sizeof sip, argus_rewrite_sip(&robot.argus, &how, data, sizeof data, out));
+    TEST_ASSERT_EQUAL_UINT8(port, out[33]);
+    TEST_ASSERT_EQUAL_UINT8(value, out[34]);
+}
+
+static void robot_shows(uint8_t port, uint8_t value) {
+    uint8_t data[sizeof sip];
+    memcpy(data, sip, sizeof sip);
+    data[33] = port;
+    data[34] = value;
+    argus_rewrite_note_analog(&analog, data, sizeof data);
+}
+
+void test_a_client_sees_the_port_that_it_chose_once_it_is_known(void) {
+    memset(&analog, 0, sizeof analog);
+    shows(4, 4, 7); // none is known: as the robot has it
+    robot_shows(2, 40);
+    shows(2, 2, 40);
+    analog.wants = 5; // the robot has not shown it yet
+    robot_shows(2, 41);
+    shows(2, 2, 41);
+    robot_shows(5, 90);
+    shows(2, 5, 90);
+    robot_shows(2, 42); // for the manager, or another client
+    shows(2, 5, 90);
+}
+
+void test_a_port_that_no_robot_has_changes_nothing(void) {
+    memset(&analog, 0, sizeof analog);
+    robot_shows(3, 30);
+    robot_shows(ARGUS_ANALOG_PORTS, 99);
+    robot_shows(255, 99);
+    TEST_ASSERT_EQUAL_HEX8(1u << 3, analog.known);
+    shows(2, 3, 30);
+    shows(ARGUS_ANALOG_PORTS, ARGUS_ANALOG_PORTS, 7); // as the robot has it
+}
+
+void test_a_sip_that_ends_before_its_port_is_left_as_it_is(void) {
+    memset(&analog, 0, sizeof analog);
+    for (size_t count = 0; count <= 34; count++) {
+        argus_rewrite_note_analog(&analog, sip, count);
+        TEST_ASSERT_EQUAL_HEX8(0, analog.known);
+    }
+    robot_shows(3, 30);
+    const argus_rewrite_t how = {.readings = ARGUS_READINGS_PASS, .arrays = 15, .analog = &analog};
+    for (size_t count = 32; count <= 34; count++) {
+        TEST_ASSERT_EQUAL_size_t(count, argus_rewrite_sip(&robot.argus, &how, sip, count, out));
+        TEST_ASSERT_EQUAL_MEMORY(sip, out, count);
+    }
+}
+
+// Arrays that no client can put off are passed: there are four switches, the last of which is bit 3.
+void test_a_sonar_beyond_the_four_arrays_is_passed(void) {
+    uint8_t data[sizeof sip];
+    memcpy(data, sip, sizeof sip);
+    data[20] = 32;
+    const argus_rewrite_t how = {.readings = ARGUS_READINGS_PASS, .arrays = 0};
+    TEST_ASSERT_EQUAL_size_t(sizeof sip - 9, argus_rewrite_sip(&robot.argus, &how, data, sizeof data, out));
+    TEST_ASSERT_EQUAL_UINT8(32, out[20]);
+}

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+// Rule under attack: what a client asks of brakes and turns stays within what S5 and S7 count on; a packet
+// that has no room is not sent in part; what a client began ends with it.
+#include "guardian/send.h"
+
+#include <string.h>
+
+#include "client.h"
+#include "unity.h"
+
+static robot_t robot;
+static argus_port_t port;
+
+void setUp(void) {
+    const argus_config_t config = robot_config_of(ARGUS_PROFILE_ARGUS);
+    robot_init(&robot, &config, 1000);
+    memset(&port, 0, sizeof port);
+}
+
+static int32_t limited(uint8_t command, int32_t argument) {
+    return argus_send_limited(&robot.argus, command, argument);
+}
+
+void test_no_client_weakens_the_brakes(void) {
+    const int32_t least = robot.argus.knowledge.robot->decel_mm_s2;
+    TEST_ASSERT_EQUAL_INT32(-least, limited(ARCOS_CMD_SETA, -1));
+    TEST_ASSERT_EQUAL_INT32(-least - 100, limited(ARCOS_CMD_SETA, -least - 100));
+    TEST_ASSERT_EQUAL_INT32(-ARGUS_CLIENT_TURN_DECEL, limited(ARCOS_CMD_SETRA, -1));
+}
+
+// 0 is taken for both by a robot, so it is what it may be at most.
+void test_acceleration_has_an_upper_bound_and_0_is_that(void) {
+    const int32_t most = limited(ARCOS_CMD_SETA, INT16_MAX);
+    TEST_ASSERT_TRUE(most > 0 && most < INT16_MAX);
+    TEST_ASSERT_EQUAL_INT32(most, limited(ARCOS_CMD_SETA, 0));
+    TEST_ASSERT_EQUAL_INT32(100, limited(ARCOS_CMD_SETA, 100));
+}
+
+void test_speeds_have_no_sign_and_a_turn_has_a_bound(void) {
+    TEST_ASSERT_EQUAL_INT32(400, limited(ARCOS_CMD_SETV, -400));
+    TEST_ASSERT_EQUAL_INT32(ARGUS_CLIENT_TURN_DEG_S, limited(ARCOS_CMD_SETRV, -3000));
+    TEST_ASSERT_EQUAL_INT32(20, limited(ARCOS_CMD_SETRV, 20));
+}
+
+void test_what_is_no_parameter_of_motion_is_not_limited(void) {
+    TEST_ASSERT_EQUAL_INT32(-30000, limited(ARCOS_CMD_GRIPPER, -30000));
+}
+
+void test_a_stream_is_known_by_its_command_and_ends_by_0(void) {
+    static const uint8_t streams[] = {ARCOS_CMD_ENCODER, ARCOS_CMD_IOREQUEST,  ARCOS_CMD_JOYREQUEST,
+                                      ARCOS_CMD_GYRO,    ARCOS_CMD_IMUREQUEST, ARCOS_CMD_GRIPREQUEST};
+    unsigned all = 0;
+    for (size_t i = 0; i < sizeof streams; i++) {
+        const uint8_t bit = argus_send_stream(streams[i], 2);
+        TEST_ASSERT_EQUAL_UINT8_MESSAGE(0, bit & (bit - 1u), "one bit");
+        TEST_ASSERT_EQUAL_HEX8_MESSAGE(0, all & bit, "of its own");
+        TEST_ASSERT_EQUAL_HEX8(0, argus_send_stream(streams[i], 0));
+        all |= bit;
+    }
+    TEST_ASSERT_EQUAL_HEX8(0x3F, all);
+    TEST_ASSERT_EQUAL_HEX8(0, argus_send_stream(ARCOS_CMD_VEL, 100));
+}
+
+static bool to_client(size_t count) {
+    static const uint8_t data[300];
+    return argus_send_client(&port, data, count);
+}
+
+void test_what_has_no_room_is_counted_and_leaves_no_part(void) {
+    TEST_ASSERT_FALSE(to_client(ARCOS_FRAME_COUNT_MAX - 1)); // no frame is so long
+    TEST_ASSERT_EQUAL(0, port.out_length);
+    TEST_ASSERT_EQUAL(1, port.lost);
+    size_t sent = 0;
+    while (to_client(100)) {
+        sent++;
+    }
+    TEST_ASSERT_EQUAL(sent * (ARCOS_FRAME_OVERHEAD + 102), port.out_length);
+    TEST_ASSERT_TRUE(port.out_length <= sizeof port.out);
+    TEST_ASSERT_EQUAL(2, port.lost);
+}
+
+// The rest of the outbox is for what stops the robot.
+void test_a_client_cannot_fill_the_outbox(void) {
+    static const uint8_t data[100];
+    argus_outbox_t out = {.length = 0};
+    const argus_grant_t grant = {.core = &robot.argus, .out = &out};
+    const argus_packet_t packet = {.data = data, .count = sizeof data};
+    int passed = 0;
+    while (argus_send_robot(&grant, &packet)) {
+        passed++;
+    }
+    TEST_ASSERT_TRUE(passed > 0 && out.length <= 320);
+    TEST_ASSERT_TRUE(argus_outbox_plain(&out, ARCOS_CMD_STOP));
+}
