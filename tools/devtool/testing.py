@@ -16,6 +16,7 @@ from devtool.docs import site_tests
 from devtool.packaging import NEEDS as PACKAGE_NEEDS
 from devtool.packaging import package_tests
 from devtool.peers import SOURCES, peers
+from devtool.proofs import proof_tests
 from devtool.real_time import hil_workers, run_in_real_time
 from devtool.ros import NEEDS as ROS_NEEDS
 from devtool.ros import ros_tests
@@ -219,6 +220,7 @@ TEST_STAGES: Final = (
         ("release",),
     ),
     Stage("docs", "the site of the documents, where its generator can be had", site_tests),
+    Stage("proofs", "what CBMC proves of the firmware, where it can be had", proof_tests),
     SOAKING,
     Stage(
         "peers",
