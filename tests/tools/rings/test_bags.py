@@ -3,11 +3,12 @@
 
 from __future__ import annotations
 
+import copy
 import gzip
 import math
 import random
 import shutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -130,6 +131,69 @@ def test_messages_out_of_order_are_discarded_and_counted(tmp_path: Path) -> None
     done = run("faults", bags.write(tmp_path / "a.bag", sent))
     assert done.stdout.decode().startswith("nothing wrong: 8 of 8")
     assert "discarded: 20 x /sonar: stamp is not newer than the last" in done.stderr.decode()
+
+
+def wall(stamps: Callable[[float], float], storage: str, tmp_path: Path, seconds: float = 6.0) -> Path:
+    """A sonar that hears one wall all the time, of a robot at rest: the stamp of each message is made of its time."""
+    times = [bags.START + n / 10 for n in range(int(seconds * 10))]
+    sent = [bags.single(t, 3, 1.5, "/sonar/range_3", "", stamp=stamps(t)) for t in times]
+    return bags.write(path_of(tmp_path, storage), sent, storage)
+
+
+STAMPS: dict[str, tuple[Callable[[float], float], str]] = {
+    "stand still": (lambda t: bags.START - 40.0, "stand still or fall in 59 messages"),
+    "stand still from 3 s": (lambda t: min(t, bags.START + 3.0), "stand still or fall in 29 messages"),
+    "whole seconds": (math.floor, "stand still or fall in 54 messages"),
+    "none": (lambda t: 0.0, "60 stamps of /sonar/range_3 are zero or no time"),
+    "before 1970": (lambda t: t - bags.START - 100.0, "60 stamps of /sonar/range_3 are zero or no time"),
+    "none after 3 s": (lambda t: t if t < bags.START + 2.95 else 0.0, "30 stamps"),
+    "an hour ahead": (lambda t: t + 3600, "are 3,600.0 s ahead of the recorder's clock"),
+    "set back": (
+        lambda t: t - (3600 if t > bags.START + 3.05 else 0),
+        f"jump 3,600.0 s back at {bags.START + 3.1:.3f} s;",
+    ),
+    "one jumps": (
+        lambda t: t + (1e6 if 3.05 < t - bags.START < 3.15 else 0),
+        f"jump 1,000,000.0 s ahead at {bags.START + 3.1:.3f} s, at most (of 2 jumps)",
+    ),
+    "half speed": (lambda t: bags.START + (t - bags.START) / 2, "run at 0.50 times the speed"),
+    "backwards": (lambda t: 2 * bags.START - t, "stand still or fall in"),
+}
+
+
+@pytest.mark.parametrize("storage", FORMS)
+@pytest.mark.parametrize("how", STAMPS)
+def test_stamps_that_bear_out_no_order_cost_no_reading(tmp_path: Path, how: str, storage: str) -> None:
+    stamps, told = STAMPS[how]
+    path = wall(stamps, storage, tmp_path)
+    done = run("faults", path)
+    assert done.stdout.decode().startswith("nothing wrong: 1 of 1 sonars healthy"), done
+    assert told in done.stderr.decode(), done.stderr.decode()
+    assert "the recorder's clock is used" in done.stderr.decode()
+    assert "discarded" not in done.stderr.decode(), done.stderr.decode()
+
+
+def test_other_readings_under_the_same_stamp_are_no_repeats(tmp_path: Path) -> None:
+    # Two of an array's messages under one stamp: only what repeats the reading, too, is left out.
+    sent = [
+        bags.single(bags.START + n / 10, 3, 1.0 + n // 2 * 0.01 + n % 2 * 0.1, "/sonar/range_3", "",
+                    stamp=bags.START + n // 2 / 5)
+        for n in range(60)
+    ]  # fmt: skip
+    done = run("faults", bags.write(tmp_path / "a.bag", sent))
+    assert "stand still or fall in 30 messages" in done.stderr.decode()
+    assert "discarded" not in done.stderr.decode()
+
+
+def test_a_message_that_was_sent_twice_counts_once(tmp_path: Path) -> None:
+    sent = []
+    for one in rosaria(DRIVE):
+        again = copy.deepcopy(one)
+        again.t += 0.003
+        sent += [one, again]
+    done = run("faults", bags.write(tmp_path / "a.bag", sent))
+    assert done.stdout.decode().startswith("nothing wrong: 8 of 8 sonars healthy in 200 SIPs")
+    assert "discarded: 200 x /sonar: stamp is not newer than the last" in done.stderr.decode()
 
 
 @pytest.mark.parametrize("storage", FORMS)

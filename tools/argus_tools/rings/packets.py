@@ -13,7 +13,7 @@ from argus_tools.rings.motion import Motion
 from argus_tools.rings.packet import identity_of, packet
 from argus_tools.rings.plan import Place, Plan, planned
 from argus_tools.rings.recording import Broken, Message, Recording
-from argus_tools.rings.sensors import Newer
+from argus_tools.rings.stamps import Newer
 from hil_sim.arcos import TIMING, frame
 from hil_sim.tables.robot import RobotTable
 
@@ -47,7 +47,8 @@ class RangeLog:
             recording.close()
 
     def _chunks(self, recording: Recording, plan: Plan) -> Iterator[Chunk]:
-        offsets, sips, newer = Offsets(), _Packets(plan), Newer()
+        offsets, sips, newer = Offsets(), _Packets(plan), Newer(plan.first)
+        plan.first = []
         for message in self._whole(recording, plan):
             self.place = f"{message.topic} at {message.t:.3f} s"
             try:

@@ -56,6 +56,8 @@ class Plan:
     frames: Frames
     present: frozenset[int]
     """The sonars that are in a message at all."""
+    first: list[Message]
+    """Messages of its beginning."""
     words: list[str] = field(default_factory=list)
 
     def millimetres(self, readings: Readings) -> dict[int, int | None]:
@@ -96,7 +98,9 @@ def planned(recording: Recording, name: str, topic: str | None, robot: str | Non
             f"no return is {sensors.table.no_echo_mm / 1000:.3f} m or more, or outside of the scan's limits"
         )
     names = [one.name for one in chosen]
-    plan = Plan(sensors.table, sensors, silence, names, odometry, transforms, frames, frozenset(present))
+    plan = Plan(
+        sensors.table, sensors, silence, names, odometry, transforms, frames, frozenset(present), seen
+    )
     count = sum(one.count for one in chosen)
     which = chosen[0].name if len(chosen) == 1 else f"{len(chosen)} topics"
     if len(chosen) == 2 and chosen[1].type == SCAN != chosen[0].type:

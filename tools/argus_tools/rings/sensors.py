@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from argus_tools.chunks import LogError
 from argus_tools.rings.geometry import Frames, Pose, frame_name, range_of, whose_frames, whose_points
-from argus_tools.rings.intake import Odd, Order, limits_of, stamp_of
+from argus_tools.rings.intake import Odd, limits_of
 from argus_tools.rings.recording import SONAR_ARRAY, Message
 from hil_sim.laser.scan import nearest_in_sectors
 from hil_sim.tables.robot import RobotTable
@@ -362,30 +362,3 @@ class Both:
 def _sees(angles: npt.NDArray[np.float64], bearing: float) -> bool:
     apart = np.arctan2(np.sin(angles - bearing), np.cos(angles - bearing))
     return bool(angles.size) and float(np.abs(apart).min()) < math.radians(1.0)
-
-
-class Newer:
-    """Discards what is older than the last of its topic by its own stamps; tells of stamps of another clock."""
-
-    APART_MOST_S: Final = 1.0
-
-    def __init__(self) -> None:
-        self._orders: dict[tuple[str, str], Order] = {}
-        self.apart: dict[str, float] = {}
-
-    def check(self, message: Message) -> None:
-        """Take a message with a header; Odd for an older one."""
-        stamp_s = stamp_of(message.body.header)
-        if stamp_s is None:
-            return
-        if message.topic not in self.apart:
-            self.apart[message.topic] = stamp_s - message.t
-        frame = getattr(message.body.header, "frame_id", "")
-        self._orders.setdefault((message.topic, frame), Order()).check(stamp_s)
-
-    def words(self) -> Iterator[str]:
-        """Yield what is to be told of stamps of another clock."""
-        for topic, apart in self.apart.items():
-            if abs(apart) > self.APART_MOST_S:
-                side = "ahead of" if apart > 0 else "behind"
-                yield f"stamps of {topic} are {abs(apart):,.1f} s {side} the recorder's clock, which is used"
