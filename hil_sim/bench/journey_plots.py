@@ -105,5 +105,17 @@ def _title(record: Record, ideal: Record) -> str:
     away = f"{record['word']}, {record['goal_mm'] / 1000:.1f} m from the goal"
     arrived = "truly at the goal" if record["truly"] else away
     takes = f"{record['t_s']:.0f} s; {ideal['t_s']:.0f} s without fault and diagnosis"
-    faults = f" ({', '.join(record['faulty'])})" if record["faulty"] else ""
-    return f"{parse_row(record['row']).says}{faults}\n{arrived} after {takes}\n{record['id']}"
+    faults = f": {', '.join(map(_fault, record['faulty']))}" if record["faulty"] else ""
+    return f"{parse_row(record['row']).says.capitalize()}{faults}\n{arrived} after {takes}"
+
+
+def _fault(written: str) -> str:
+    """Return a fault in words.
+
+    >>> _fault("intermittent:5:p=0.8")
+    'sonar 5 intermittent (p=0.8)'
+    """
+    kind, _, rest = written.partition(":")
+    target, _, more = rest.partition(":")
+    which = f"sonar {target}" if target.isdigit() else target.replace("-", " ")
+    return " ".join(filter(None, [which, kind, f"({more.replace(':', ', ')})" if more else ""]))

@@ -19,6 +19,8 @@ BOARDS: Final = ("mps2-an386", "stm32f405")
 """The presets that make an image of a microcontroller."""
 ELSEWHERE: Final = ("blank", "mps2-tests", "stm32f405-tests", "big-endian")
 """Those whose programs run on another machine."""
+TO_RUN: Final = ("argusd", "argus_shared", "argus_sim")
+"""What is built to run the programs: no tests, which take most of the time."""
 WITHOUT_ARGUSD: Final = ("m32", "cortex-m4", "coverage", "mcdc", *BOARDS, *ELSEWHERE)
 SOAK: Final = "soak"
 """The label of the unit tests that compute for long; they are run once, in the release build."""
@@ -54,13 +56,16 @@ def configure(preset: str, run: Run, compiler: str = "") -> None:
     stamp.write_text(recipe)
 
 
-def build(preset: str, run: Run, settings: Sequence[str] = (), compiler: str = "") -> None:
-    """Configure and build PRESET; SETTINGS of CMake (NAME=VALUE) are kept until others are given."""
+def build(
+    preset: str, run: Run, settings: Sequence[str] = (), compiler: str = "", targets: Sequence[str] = ()
+) -> None:
+    """Configure and build PRESET, or TARGETS of it; SETTINGS (NAME=VALUE) are kept until others are given."""
     with alone(), making():
         configure(preset, run, compiler)
         if settings:
             run(["cmake", BUILD / preset, *(f"-D{setting}" for setting in settings)])
-        run(["cmake", "--build", "--preset", preset, "-j", str(CORES)])
+        chosen = ["--target", *targets] if targets else []
+        run(["cmake", "--build", "--preset", preset, "-j", str(CORES), *chosen])
 
 
 def ctest(preset: str, run: Run, *options: str) -> None:

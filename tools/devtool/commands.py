@@ -28,7 +28,7 @@ from devtool.base import (
     say,
     shown,
 )
-from devtool.cmake import build, presets
+from devtool.cmake import TO_RUN, build, presets
 from devtool.setup import ensure
 from devtool.stages import STAGE_LIMIT_S, StageFailed, logged_runner, tail_of
 
@@ -74,7 +74,7 @@ def do_demo(args: argparse.Namespace) -> int:
     ensure(["release"])
     if not is_set_up:
         leave_where_ended(python, args.rest)
-    quietly("building argusd", functools.partial(build, "release"))
+    quietly("building argusd", functools.partial(build, "release", targets=TO_RUN))
     say("starting the demonstration")
     os.execve(python, [python, "-m", "hil_sim.demo", *args.rest], environment())
 
@@ -125,7 +125,7 @@ def shell_command(shell: str, env: dict[str, str]) -> list[str]:
 def do_shell(args: argparse.Namespace) -> int:
     """Set up, build, and become a shell, or the command given, that finds what was built."""
     ensure(["release"])
-    quietly("building argusd", functools.partial(build, "release"))
+    quietly("building argusd", functools.partial(build, "release", targets=TO_RUN))
     env = shell_environment()
     command = args.rest or shell_command(os.environ.get("SHELL") or "/bin/sh", env)
     if not args.rest:

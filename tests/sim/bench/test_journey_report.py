@@ -58,7 +58,10 @@ def test_the_files_are_written_with_a_picture_of_the_worst(tmp_path: Path) -> No
     assert summary["bars"]
     assert differs_most(RECORDS)[0][0]["id"] == "argus/judge/rooms/lab/2"
     svg = (tmp_path / "rooms-argus.svg").read_text(encoding="utf-8")
-    told = ("argus/judge/rooms/lab/2", "truly at the goal after 600 s; 150 s without fault and diagnosis")
+    told = (
+        "Rooms, healthy, nobody about",
+        "truly at the goal after 600 s; 150 s without fault and diagnosis",
+    )
     for label in (*told, "stop (1)", "look (1)", "collision (1)"):
         assert label in svg, label
     assert (tmp_path / "rooms+one+start-paper.png").stat().st_size > 1000

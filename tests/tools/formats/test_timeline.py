@@ -79,6 +79,14 @@ def test_whole_seconds_are_spread() -> None:
     assert told == [("its clock", "gives whole seconds")]
 
 
+@pytest.mark.parametrize("step_s", [2, 5, 10])
+def test_steps_of_several_seconds_are_spread(step_s: int) -> None:
+    starts = [1000.0 + step_s * k for k in (0, 1, 2, 3, 5, 6)]
+    found, told = times([t for t in starts for _ in range(13 * step_s)])
+    assert found == [round(t + k / 13, 6) for t in starts for k in range(13 * step_s)]
+    assert told == [("its clock", f"gives steps of {step_s} s")]
+
+
 @pytest.mark.parametrize(
     "given",
     [
@@ -177,6 +185,29 @@ def test_candump_with_times_since_the_line_before(tmp_path: Path) -> None:
     found = [chunk.t for chunk in open_log(str(log))]
     assert found[0] == pytest.approx(0.000009)
     assert found[-1] == pytest.approx(sum(float(line[1:11]) for line in lines))
+
+
+NEGATIVE = {
+    "candump -L": ("({:.6f}) can0 640#06FAFB03000000CC", "({:.6f}) can0 648#06FAFB03000000CC"),
+    "candump": ("({:.6f})  can0  640   [7]  06 FA FB 03 00 00 00", "({:.6f})  can0  648   [7]  06 FA FB 03 00 00 00"),
+    "bytes": ("[{:.6f}] TX: FA FB 03 00 00 00", "[{:.6f}] RX: FA FB 03 00 00 00"),
+    "python-can": (
+        "Timestamp: {:15.6f}        ID: 640    S Rx                DL:  7    06 fa fb 03 00 00 00",
+        "Timestamp: {:15.6f}        ID: 648    S Rx                DL:  7    06 fa fb 03 00 00 00",
+    ),
+    "CRTD": ("{:.6f} 1T11 640 06 FA FB 03 00 00 00", "{:.6f} 1R11 648 06 FA FB 03 00 00 00"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("form", NEGATIVE)
+def test_negative_times_of_any_text_are_counted_from_the_first(form: str, tmp_path: Path) -> None:
+    log = tmp_path / "log.txt"
+    log.write_text("".join(NEGATIVE[form][n % 2].format(-2.5 + n / 4) + "\n" for n in range(20)))
+    reader = open_log(str(log))
+    assert [chunk.t for chunk in reader] == [n / 4 for n in range(20)]
+    assert [entry.what for entry in reader.damage] == [
+        "times begin at -2.500000 s; they are counted from there"
+    ]
 
 
 def test_an_asc_with_a_date_and_negative_times_is_absolute(tmp_path: Path) -> None:

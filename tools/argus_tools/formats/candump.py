@@ -35,7 +35,7 @@ _BUS: Final = rb"((?!\d+\.\d)[^\s#()\[\]{}:]+)"
 # No computer has more of them.
 _BUSES_MOST: Final = 16
 _LINE: Final = re.compile(
-    rb"\s*(?:\((\d{1,12}\.\d{1,9})\)\s+)?(?:" + _BUS + rb"\s+)?" + _ID + rb"#"
+    rb"\s*(?:\(\s*(-?\d{1,12}\.\d{1,9})\)\s+)?(?:" + _BUS + rb"\s+)?" + _ID + rb"#"
     rb"(?:R[0-9A-Fa-f_]*|(?:#[0-9A-Fa-f])?([0-9A-Fa-f.]*))(?:\s+[RTX])*\s*(?:::.*)?",
     re.DOTALL,
 )
@@ -43,14 +43,14 @@ _LINE: Final = re.compile(
 _USUAL: Final = re.compile(rb"\((\d{1,12}\.\d{1,9})\) (\S+) ([0-9A-Fa-f]{3})#([0-9A-Fa-f]{2,16})\n")
 # What candump prints without -L: time by -t, marks by -x, length in braces by -8.
 _SCREEN: Final = re.compile(
-    rb"\s*(?:\(\s*(?:(\d{4}-\d\d-\d\d[ T]\d\d:\d\d:\d\d\.\d{1,9})|(\d{1,12}\.\d{1,9}))\)\s+)?"
+    rb"\s*(?:\(\s*(?:(\d{4}-\d\d-\d\d[ T]\d\d:\d\d:\d\d\.\d{1,9})|(-?\d{1,12}\.\d{1,9}))\)\s+)?"
     + _BUS
     + rb"\s+(?:[RT]X\s+\S\s+\S\s+)?"
     + _ID
     + rb"\s+([\[{])\s*([0-9A-Fa-f]{1,2})\s*[\]}](.*)",
     re.DOTALL,
 )
-_RELATIVE: Final = re.compile(rb"^\s*\((\d{1,8}\.\d{1,9})\)", re.MULTILINE)
+_RELATIVE: Final = re.compile(rb"^\s*\(\s*(-?\d{1,8}\.\d{1,9})\)", re.MULTILINE)
 # What cantools decode prints below a frame that its database knows, up to the closing bracket.
 _MESSAGE: Final = re.compile(rb"\w+\(\s*\Z")
 _COLOUR: Final = re.compile(rb"\x1b\[[0-9;]*[A-Za-z]")

@@ -42,9 +42,9 @@ class _Kind:
 _KINDS: Final = (
     _Kind(
         "python-can",
-        re.compile(r"\s*Timestamp:\s+\d+\.\d+\s+ID:\s+[0-9a-f]+\s"),
+        re.compile(r"\s*Timestamp:\s+-?\d+\.\d+\s+ID:\s+[0-9a-f]+\s"),
         re.compile(
-            r"\s*Timestamp:\s+(?P<t>\d+\.\d+)\s+ID:\s+(?P<id>[0-9a-f]+)\s+(?P<long>[SX])\s+(?:[RT]x\s+)?(?:F\s*)?(?:BS|EI|\s)*"
+            r"\s*Timestamp:\s+(?P<t>-?\d+\.\d+)\s+ID:\s+(?P<id>[0-9a-f]+)\s+(?P<long>[SX])\s+(?:[RT]x\s+)?(?:F\s*)?(?:BS|EI|\s)*"
             r"DL:\s+(?P<size>\d+)\s+" + _BYTES + r"(?:'.*'\s*)?(?:Channel:\s*(?P<bus>\S+))?\s*$"
         ),
     ),
@@ -58,9 +58,9 @@ _KINDS: Final = (
     ),
     _Kind(
         "CRTD",
-        re.compile(r"\d+\.\d+\s+\d?[RT](?:11|29)\s"),
+        re.compile(r"-?\d+\.\d+\s+\d?[RT](?:11|29)\s"),
         re.compile(
-            r"(?P<t>\d+\.\d+)\s+(?P<bus>\d?)[RT](?P<long>11|29)\s+(?P<id>[0-9A-Fa-f]+)(?:\s+|$)"
+            r"(?P<t>-?\d+\.\d+)\s+(?P<bus>\d?)[RT](?P<long>11|29)\s+(?P<id>[0-9A-Fa-f]+)(?:\s+|$)"
             + _BYTES
             + "$"
         ),
@@ -85,7 +85,7 @@ _KINDS: Final = (
 )
 _LONG: Final = ("X", "x", "29")  # an id of more than 11 bits needs no mark
 # What else such a program writes between its frames.
-_PASSED: Final = re.compile(r"\s*(?:#|\*\*\*|\d+\.\d+\s+\d?C)")
+_PASSED: Final = re.compile(r"\s*(?:#|\*\*\*|-?\d+\.\d+\s+\d?C)")
 
 
 class CanLinesReader:

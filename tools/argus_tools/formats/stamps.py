@@ -36,7 +36,7 @@ _CLOCK: Final = (
     rb"(?:[ ]?(?:Z|UTC|GMT)(?![0-9a-z])|[ ]?(?P<zone>[+-]\d\d:?\d\d)|(?P<hours>[+-]\d\d))?"
     rb"(?(weekday)(?:[ ]+[A-Z]{3,5})?(?:[ ]+(?P<behind>\d{4})(?![0-9a-z]))?|)"
 )
-_SINCE: Final = rb"(?P<since>[+]?\d{1,12}\.\d{1,9})(?:[ ]?s)?"
+_SINCE: Final = rb"(?P<since>[+-]?\d{1,12}\.\d{1,9})(?:[ ]?s)?"
 # Whole seconds, milliseconds or microseconds since 1970 before bytes in pairs.
 _EPOCH: Final = (
     rb"(?P<epoch>1\d{9}(?:\d{3}){0,2})(?=[\])}]?[\s:;,|]+(?:0x)?(?:[0-9a-f]{2}(?![0-9a-f])|fa[ ,:]?fb))"

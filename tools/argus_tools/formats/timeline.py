@@ -5,7 +5,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from decimal import Decimal
-from itertools import chain, groupby
+from itertools import chain, groupby, pairwise
+from math import gcd
+from statistics import median
 from typing import Final, Self
 
 from argus_tools.chunks import Chunk, Damage, DamageList
@@ -28,6 +30,9 @@ SECONDS_SEEN: Final = 3
 """So many seconds that are over tell whether a clock has whole seconds only."""
 SECOND_MOST: Final = 400
 """More chunks than the fastest link carries in that time are not waited for."""
+STEP_MOST_S: Final = 10
+STEP_LEAST: Final = 5
+"""A clock of steps of several seconds has so many chunks a second in most of them; a link that pauses has fewer."""
 
 
 class Wrapping(float):
@@ -130,8 +135,9 @@ class Timeline:
         place = getattr(self._chunks, "place", "") or f"byte {chunk.offset} of {chunk.dir}"
         self._damage.correct(Damage(place, what))
 
-    def _report_coarse(self) -> None:
-        what = "gives whole seconds; what lies within one is spread evenly over it"
+    def _report_coarse(self, step_s: int = 1) -> None:
+        steps = "whole seconds" if step_s == 1 else f"steps of {step_s} s"
+        what = f"gives {steps}; what lies within one is spread evenly over it"
         self._damage.correct(Damage("its clock", what))
 
     def _paced(self, chunks: Iterator[Chunk]) -> Iterator[Chunk]:
@@ -155,33 +161,33 @@ class Timeline:
 
     def _spread(self, chunks: Iterator[Chunk]) -> Iterator[Chunk]:
         head: list[Chunk] = []
-        coarse: bool | None = None
+        step_s: int | None = None
         for chunk in chunks:
             head.append(chunk)
-            if (coarse := _is_coarse(head)) is not None:
+            if (step_s := _step_s(head)) is not None:
                 break
-        if not coarse:
+        if not step_s:
             yield from head
             yield from chunks
             return
-        self._report_coarse()
+        self._report_coarse(step_s)
         held: list[Chunk] = []
         stands = False
         for chunk in chain(head, chunks):
             if held and chunk.t != held[0].t:
-                yield from held[1:] if stands else _evenly(held)
+                yield from held[1:] if stands else _evenly(held, step_s)
                 held, stands = [], False
             if stands:
                 yield chunk
                 continue
             held.append(chunk)
-            if len(held) > SECOND_MOST:
+            if len(held) > SECOND_MOST * step_s:
                 # More than a link carries: a clock that stands. Of its entries no time is known, and none is held.
-                what = f"stands at {chunk.t}: more than {SECOND_MOST} entries have this time"
+                what = f"stands at {chunk.t}: more than {SECOND_MOST * step_s} entries have this time"
                 self._damage.correct(Damage("its clock", what))
                 yield from held
                 held, stands = held[:1], True
-        yield from held[1:] if stands else _evenly(held)
+        yield from held[1:] if stands else _evenly(held, step_s)
 
 
 def _period(t: float, raw: float) -> float | None:
@@ -201,25 +207,30 @@ def _period(t: float, raw: float) -> float | None:
     )
 
 
-def _is_coarse(head: list[Chunk]) -> bool | None:
-    """Whether a clock gives whole seconds only, seen from a log's beginning; None while it may yet.
+def _step_s(head: list[Chunk]) -> int | None:
+    """Return the whole seconds by which a clock steps, by a log's beginning; 0: it is finer; None: not known yet.
 
-    It passes on by whole seconds, with several chunks in most of those that are over; the first may be cut.
+    It passes on by these, with several chunks in most of those that are over; the first may be cut.
     """
-    last = head[-1].t
-    if last is None or last != int(last) or len(head) > SECOND_MOST:
-        return False
-    if last == head[0].t:
+    last, first = head[-1].t, head[0].t
+    if last is None or first is None or last != int(last) or len(head) > SECOND_MOST * STEP_MOST_S:
+        return 0
+    if last == first:
+        return 0 if len(head) > SECOND_MOST else None
+    if last == head[-2].t:
         return None
-    sizes = [len(list(second)) for _, second in groupby(head, key=lambda chunk: chunk.t)]
-    if len(sizes) <= SECONDS_SEEN:
+    seconds = [(t, len(list(second))) for t, second in groupby(head, key=lambda chunk: chunk.t)]
+    if len(seconds) <= SECONDS_SEEN:
         return None
-    over = sizes[1:-1]
-    return 2 * sum(size > 1 for size in over) > len(over)
+    over = [size for _, size in seconds[1:-1]]
+    step_s = gcd(*(int(after - before) for (before, _), (after, _) in pairwise(seconds) if before and after))
+    if 1 < step_s <= STEP_MOST_S and median(over) >= STEP_LEAST * step_s:
+        return step_s
+    return int(2 * sum(size > 1 for size in over) > len(over))
 
 
-def _evenly(second: list[Chunk]) -> Iterator[Chunk]:
-    """Yield chunks of one second, spread over it."""
+def _evenly(second: list[Chunk], step_s: int) -> Iterator[Chunk]:
+    """Yield chunks of one second, or of one step of a coarser clock, spread over it."""
     for number, chunk in enumerate(second):
         t = chunk.t
-        yield chunk if t is None else chunk._replace(t=round(t + number / len(second), 6))
+        yield chunk if t is None else chunk._replace(t=round(t + step_s * number / len(second), 6))
