@@ -18,6 +18,7 @@
 #define CURVE_STEP_MM_S 25
 #define TURN_NEAR_MM 250    // beyond the circle that the body sweeps
 #define TURN_LEAST_DEG_S 10 // slower is steering
+#define TURN_MOST_DEG_S 500 // no robot turns faster; times the way until it stands it fits in 31 bits
 
 static argus_bound_t closed(const argus_bound_why_t why) {
     return (argus_bound_t){.speed_mm_s = 0, .way_mm = 0, .why = why};
@@ -36,7 +37,7 @@ int32_t argus_turn_deg_s(const argus_knowledge_t *const knowledge) {
 }
 
 static int32_t turn_deg_s(const argus_t *const self) {
-    return argus_abs(argus_turn_deg_s(&self->knowledge));
+    return argus_min(argus_abs(argus_turn_deg_s(&self->knowledge)), TURN_MOST_DEG_S);
 }
 
 static int32_t speed_mm_s(const argus_t *const self) {

@@ -231,8 +231,8 @@ static bool loses_way(argus_knowledge_t *const self, const argus_span_t *const s
 
 static void take_motion(argus_knowledge_t *const self, const argus_sip_t *const sip) {
     const argus_wheels_t wheels = wheels_of(self->robot, sip);
-    const int32_t left = wheels.left_mm_s;
-    const int32_t right = wheels.right_mm_s;
+    const int32_t left = argus_odometry_speed_mm_s(wheels.left_mm_s); // a SIP may state any
+    const int32_t right = argus_odometry_speed_mm_s(wheels.right_mm_s);
     self->vel_left_mm_s = (int16_t)left;
     self->vel_right_mm_s = (int16_t)right;
     self->rotating = argus_abs(left - right) > ROTATING_MM_S;

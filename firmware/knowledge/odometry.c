@@ -54,6 +54,10 @@ static int32_t elapsed_ms(const argus_span_t *const span) {
     return (int32_t)(span->elapsed_ms < GAP_MAX_MS ? span->elapsed_ms : GAP_MAX_MS);
 }
 
+int32_t argus_odometry_speed_mm_s(const int32_t mm_s) {
+    return argus_within(FASTEST_MM_S, mm_s);
+}
+
 bool argus_odometry_is_speed(const int32_t mm_s) {
     return argus_abs(mm_s) <= FASTEST_MM_S;
 }

@@ -55,8 +55,9 @@ typedef struct {
     int32_t credit_ms; // time without a SIP: those that come in a bunch after it make up for it
 } argus_excess_t;
 
-// Whether a wheel can turn so fast.
+// Whether a wheel can turn so fast; and what it can, where it is stated to turn faster.
 bool argus_odometry_is_speed(int32_t mm_s);
+int32_t argus_odometry_speed_mm_s(int32_t mm_s);
 
 // What the wheels say that it has moved: ahead, and counter-clockwise.
 argus_way_turn_t argus_odometry_by_wheels(const argus_span_t *span);

@@ -5,7 +5,7 @@
 // Sources: firmware/guardian/wish.c
 // Unwind: 3
 // Ci: yes
-// Mutant: firmware/guardian/wish.c | degrees % 360 * 100 | degrees * 100 * 1000
+// Mutant: firmware/guardian/wish.c | self->half_mm_s = (right_mm_s - left_mm_s) / 2; | self->half_mm_s = right_mm_s - left_mm_s;
 // Mutant: firmware/guardian/wish.c | (int32_t)(byte & 0xFFu) - | (int32_t)(byte & 0x1FFu) -
 #include "proof.h"
 

@@ -26,6 +26,27 @@ void test_wrap_keeps_the_direction_and_the_range(void) {
     argus_angle_wrap(INT32_MIN);
 }
 
+// The next angle is one hundredth on, but for the one behind half a turn.
+static void walk_all(const int64_t from, const int64_t to) {
+    int32_t expected = argus_angle_wrap((int32_t)from);
+    for (int64_t a = from; a <= to; a++) {
+        const int32_t wrapped = argus_angle_wrap((int32_t)a);
+        if (wrapped != expected) {
+            TEST_ASSERT_EQUAL(expected, wrapped);
+        }
+        expected = expected == 18000 ? -17999 : expected + 1;
+    }
+}
+
+void test_each_angle_of_a_thousand_turns(void) {
+    walk_all(-3600000, 3600000);
+    TEST_ASSERT_EQUAL(0, argus_angle_wrap(0));
+}
+
+void test_each_angle_that_there_is(void) { // wide
+    walk_all(INT32_MIN, INT32_MAX);
+}
+
 void test_difference_is_the_shorter_way(void) {
     TEST_ASSERT_EQUAL(200, argus_angle_abs_diff(17900, -17900));
     TEST_ASSERT_EQUAL(18000, argus_angle_abs_diff(0, 18000));

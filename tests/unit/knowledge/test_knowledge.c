@@ -309,3 +309,23 @@ void test_sonars_are_not_silent_before_their_array_is_on(void) {
     }
     TEST_ASSERT_EQUAL_UINT32(2100, argus_silent_ms(&k, 3));
 }
+
+// A SIP may state any speed of a wheel. What is worked out of it counts on one that robots drive: the guard
+// port's way to the side overflowed, and the least of 16 bits has no opposite for the end that leads.
+void test_a_wheel_that_no_robot_has_is_as_fast_as_the_fastest(void) {
+    static const int16_t stated[] = {INT16_MIN, -2001, -2000, 2000, 2001, INT16_MAX};
+    static const int16_t kept[] = {-2000, -2000, -2000, 2000, 2000, 2000};
+    for (int reversed = 0; reversed <= 1; reversed++) {
+        setUp();
+        take(1000);
+        if (reversed != 0) {
+            argus_knowledge_turn_about(&k, argus_robot_other_end(k.robot));
+        }
+        for (int i = 0; i < 6; i++) {
+            wheels(stated[i], stated[5 - i]);
+            take(1000);
+            TEST_ASSERT_EQUAL(kept[i], argus_built_wheels(&k).left_mm_s);
+            TEST_ASSERT_EQUAL(kept[5 - i], argus_built_wheels(&k).right_mm_s);
+        }
+    }
+}
