@@ -255,6 +255,20 @@ FLOWS: Final[dict[str, Flow | Bytes]] = {
             ("its tests", "a gap fails the build", ""),
         ),
     ),
+    "misra": Flow(
+        (
+            ("firmware/",),
+            ("cppcheck\naddon misra",),
+            ("listed with a reason", "any other"),
+            ("fails",),
+        ),
+        (
+            ("firmware/", "cppcheck", ""),
+            ("cppcheck", "listed with a reason", ""),
+            ("cppcheck", "any other", ""),
+            ("any other", "fails", ""),
+        ),
+    ),
     "trust": Flow(
         (
             ("unit tests", "proofs, analysers", "monitor S1 to S8"),

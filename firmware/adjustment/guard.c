@@ -169,7 +169,8 @@ int32_t argus_guard_ahead_mm(const argus_guard_t *const self, const int32_t seen
     return bounded_mm(self, argus_max(0, clear_mm - argus_guard_unseen_way_mm(self)));
 }
 
-bool argus_guard_is_doubted(const argus_guard_t *const self) {
+// A sonar ahead has the name of a fault.
+static bool is_doubted(const argus_guard_t *const self) {
     return (argus_named(self->knowledge) & argus_robot_ahead(self->knowledge->robot)) != 0;
 }
 
@@ -217,7 +218,7 @@ int32_t argus_guard_speed_mm_s(const argus_guard_t *const self, const int32_t se
     if (!argus_guard_is_heard(self)) {
         return argus_guard_unseen_mm_s(self);
     }
-    const bool asks = argus_guard_is_doubted(self) && seen_mm == INT32_MAX && self->profile->drives_seen;
+    const bool asks = is_doubted(self) && seen_mm == INT32_MAX && self->profile->drives_seen;
     const int32_t others_mm = asks ? seen_by_rays_mm(self) : seen_mm;
     return asks && others_mm < SEEN_DOUBTED_MM ? slow_mm_s(self->config)
                                                : argus_guard_free_speed_mm_s(self, others_mm);

@@ -79,9 +79,6 @@ int32_t argus_guard_touched_mm(const argus_guard_t *self);
 // What it drives on at its present speed while the link is late: until a MOVE takes effect.
 int32_t argus_guard_unseen_way_mm(const argus_guard_t *self);
 
-// A sonar ahead has the name of a fault.
-bool argus_guard_is_doubted(const argus_guard_t *self);
-
 // S2, S5: how far before the sonars' faces what was heard a moment ago stands in the way of the body, though
 // none hears it now: a smooth wall turns echoes away, and the end of one gives hardly any.
 int32_t argus_guard_heard_mm(const argus_guard_t *self);

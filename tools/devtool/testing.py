@@ -13,6 +13,7 @@ from devtool.browser import monitor_tests
 from devtool.cmake import BOARDS, SOAK, TOUR, WIDE, build, build_and_test, ctest
 from devtool.coverage import coverage_stage, mcdc_stage
 from devtool.docs import site_tests
+from devtool.misra import misra
 from devtool.packaging import NEEDS as PACKAGE_NEEDS
 from devtool.packaging import package_tests
 from devtool.peers import SOURCES, peers
@@ -166,6 +167,12 @@ SOAK_STAGES: Final = (
         "mcdc",
         "what each condition of firmware/ decides by itself in the C unit tests, where clang can count it",
         mcdc_stage,
+    ),
+    Stage(
+        "misra",
+        "rules of MISRA C:2012 that firmware/ breaks, against the deviations of docs/misra.md",
+        misra,
+        needs=("cppcheck",),
     ),
     Stage(
         "fuzz",
