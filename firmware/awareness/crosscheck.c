@@ -10,6 +10,7 @@
 #include "awareness/gen_likelihoods.h"
 #include "awareness/numbers.h"
 #include "awareness/odds.h"
+#include "awareness/scan.h"
 #include "knowledge/angle.h"
 
 // DIVIDED: the others contradict each other. SAME: the map leaves it where it is.
@@ -438,55 +439,6 @@ static void look_back(argus_evidence_t *const self, const argus_knowledge_t *con
 
 // A laser's scan as a witness of a sonar ------------------------------------------------------------------
 
-// The return of a sector: how far from the transducer, and how far aside of its axis.
-static argus_point_t seen_from(const argus_knowledge_t *const knowledge, const int sonar, const int sector) {
-    const argus_sonar_pose_t from = argus_robot_pose(knowledge->robot, sonar);
-    const argus_point_t at = argus_echo_robot(knowledge, sector);
-    return argus_in_frame((argus_point_t){at.x_mm - from.x_mm, at.y_mm - from.y_mm}, from.heading_deg * 100);
-}
-
-static bool returns_now(const argus_knowledge_t *const knowledge, const int sector) {
-    return argus_robot_is_sector(knowledge->robot, sector) && (knowledge->fresh >> sector & 1u) != 0 &&
-           !argus_is_out(knowledge, sector) && knowledge->sonar[sector].reading_mm < ARGUS_NO_ECHO_MM;
-}
-
-// No sector beside it has something nearer: what it returns is the foot of a wall, or a thing that stands
-// out. A sonar hears that; what lies aslant it may not.
-static bool is_foot(const argus_knowledge_t *const knowledge, const int sector) {
-    const uint16_t mm = knowledge->sonar[sector].reading_mm;
-    for (int beside = sector - 1; beside <= sector + 1; beside += 2) {
-        const bool there =
-            beside >= 0 && beside < knowledge->sonars && argus_robot_is_sector(knowledge->robot, beside);
-        const int other =
-            there ? beside : 2 * sector - beside; // at the rim of the field a wall is nearly square
-        const int32_t least_mm =
-            there ? mm : knowledge->sonar[other].reading_mm - mm * ARGUS_SCAN_RIM_PERCENT / 100;
-        if (knowledge->sonar[other].reading_mm < mm || least_mm > mm) {
-            return false;
-        }
-    }
-    return true;
-}
-
-// The nearest return within the cone, mm from the transducer, and its sector; -1: none.
-static int nearest_sector(const argus_knowledge_t *const knowledge, const int sonar, int32_t *const mm) {
-    const int32_t inner_deg = (knowledge->robot->cone_deg - knowledge->robot->sector_deg) / 2 + 1;
-    const int32_t tangent = ARGUS_TRIG_ONE * argus_sin(inner_deg * 100) / argus_cos(inner_deg * 100);
-    int nearest = -1;
-    for (int i = 0; i < knowledge->sonars; i++) {
-        if (returns_now(knowledge, i)) {
-            const argus_point_t at = seen_from(knowledge, sonar, i);
-            const int32_t far_mm = argus_hypot(at.x_mm, at.y_mm);
-            const bool within = at.x_mm > 0 && argus_abs(at.y_mm) <= at.x_mm * tangent / ARGUS_TRIG_ONE;
-            if (within && (nearest < 0 || far_mm < *mm)) {
-                nearest = i;
-                *mm = far_mm;
-            }
-        }
-    }
-    return nearest;
-}
-
 // What it returns a sonar hears, or something nearer: that may be below the plane of the scan. So a laser
 // never contradicts what is nearer, and where it returns nothing it says nothing. A scan is many rays: it
 // counts for two, the sector and one beside it.
@@ -496,8 +448,8 @@ static void ask_laser(const argus_knowledge_t *const knowledge, const int sonar,
     if (argus_robot_sectors(knowledge->robot) == 0 || argus_robot_is_sector(knowledge->robot, sonar)) {
         return;
     }
-    const int sector = nearest_sector(knowledge, sonar, &mm);
-    if (sector < 0 || mm < ARGUS_NEAREST_MM || mm > ARGUS_SURE_MM || !is_foot(knowledge, sector)) {
+    const int sector = argus_scan_heard(knowledge, sonar, &mm);
+    if (sector < 0 || mm < ARGUS_NEAREST_MM || mm > ARGUS_SURE_MM) {
         return;
     }
     const int32_t limit_mm = ARGUS_AGREE_MM + mm * ARGUS_AGREE_PERCENT / 100;

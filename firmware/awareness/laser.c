@@ -5,6 +5,7 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "awareness/scan.h"
 #include "knowledge/angle.h"
 
 // Sectors follow each other from left to right.
@@ -133,25 +134,6 @@ static void take_cut(argus_laser_t *const self, const sectors_t *const sectors,
 
 // Turned and scaled ----------------------------------------------------------------------------------------
 
-// The foot of a wall lies in the sector: those beside it see the same wall, somewhat farther off. Where it
-// lies tells the difference of these.
-static bool is_wall(const sectors_t *const sectors, const int k, const int32_t width_cdeg,
-                    int32_t *const aside_cdeg) {
-    const int32_t p = now_mm(sectors, k);
-    const int32_t left = now_mm(sectors, k - 1);
-    const int32_t right = now_mm(sectors, k + 1);
-    if (p < ARGUS_SCAN_WALL_LEAST_MM || p > ARGUS_SURE_MM || left < p || right < p || !is_return(left) ||
-        !is_return(right)) {
-        return false;
-    }
-    const int64_t scale = (int64_t)ARGUS_RADIAN_CDEG * ARGUS_RADIAN_CDEG;
-    const int64_t aside = (right - left) * scale / (p * (int64_t)width_cdeg);
-    const int64_t bent = (int64_t)p * width_cdeg * width_cdeg / scale;
-    *aside_cdeg = (int32_t)aside;
-    return argus_abs(*aside_cdeg) <= width_cdeg * 2 / 3 &&
-           left + right - 2 * p <= bent + ARGUS_FAMILIAR_MM / 2;
-}
-
 static void keep(int32_t *const sum, const int32_t more) {
     *sum = *sum / 16 * ARGUS_SCAN_KEEPS_SIXTEENTHS + more;
 }
@@ -265,7 +247,8 @@ static void take_walls(argus_laser_t *const self, const sectors_t *const sectors
     }
     for (int k = 1; k + 1 < sectors->count; k++) {
         int32_t aside_cdeg = 0;
-        if (is_wall(sectors, k, robot->sector_deg * 100, &aside_cdeg)) {
+        if (now_mm(sectors, k) >= ARGUS_SCAN_WALL_LEAST_MM &&
+            argus_scan_shape(sectors->knowledge, sectors->first + k, &aside_cdeg) == ARGUS_SHAPE_WALL) {
             const int32_t mount_cdeg = argus_robot_pose(robot, sectors->first + k).heading_deg * 100;
             follow(self, &now, argus_angle_wrap(now.heading_cdeg + mount_cdeg + aside_cdeg),
                    now_mm(sectors, k));

@@ -66,3 +66,9 @@ def test_a_laser_bears_witness_against_a_dead_sonar() -> None:
     outcome = drive(str(RINGS / "sonars-laser.toml"), "gen-corridor", 2, 30.0, dead=(0,))
     assert set(outcome.named) == {0}, "gen-corridor 2"
     assert outcome.named[0] <= 20_000 + 3_000
+
+
+@pytest.mark.parametrize(("world", "seconds"), [("gen-corridor", 130.0), ("gen-clutter", 100.0)])
+def test_a_laser_names_no_healthy_sonar(world: str, seconds: float) -> None:
+    # What is at the rim of a cone a laser returns and a sonar may miss.
+    assert drive(str(RINGS / "sonars-laser.toml"), world, 2, seconds).named == {}, f"{world} 2"
