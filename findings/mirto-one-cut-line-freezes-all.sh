@@ -30,6 +30,8 @@ import sys
 import threading
 import types
 
+import serial
+
 settings = sys.modules["mirto_asip_manager.settings"] = types.ModuleType("settings")  # it logs to /var/log
 settings.logging = logging
 logging.disable(logging.CRITICAL)
@@ -66,8 +68,8 @@ def received(damaged):
     running.set()
     manager = asip_manager.AsipManager.__new__(asip_manager.AsipManager)
     manager.all_services = {"encoders": Encoders("Encoders", None), "ir_sensors": IRSensors("IR", 1, None)}
-    connection = serialConnector.SerialConnection.__new__(serialConnector.SerialConnection)
-    connection.ser, connection.debug = Port(), False
+    serial.Serial = Port
+    connection = serialConnector.SerialConnection()
     reader = threading.Thread(target=connection.receive_data, args=(running, manager.run_services, running.clear))
     reader.start()
     reader.join()
