@@ -8,7 +8,7 @@ import sys
 from collections.abc import Callable, Sequence
 from typing import Final
 
-from devtool import commands, docs, firmware, packaging, proofs
+from devtool import commands, docs, firmware, mutation, packaging, proofs
 from devtool.base import Stop, leave_at_sigterm
 from devtool.cmake import presets
 from devtool.coverage import do_coverage
@@ -165,6 +165,7 @@ def make_parser() -> argparse.ArgumentParser:
         firmware.add_commands,
         packaging.add_commands,
         proofs.add_commands,
+        mutation.add_commands,
     ):
         add_some(add)
     return parser
