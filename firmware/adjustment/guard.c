@@ -325,7 +325,7 @@ static bool is_touched_in_nudge(const argus_guard_t *const self, const nudge_t *
 static bool is_remembered_in_nudge(const argus_guard_t *const self, const nudge_t *const nudge) {
     for (int i = 0; i < self->echoes->count; i++) {
         argus_point_t at;
-        if (argus_echoes_near(self->echoes, self->knowledge, i, &at) &&
+        if (argus_echoes_beside(self->echoes, self->knowledge, i, &at) &&
             is_swept(self->knowledge->robot, at, nudge)) {
             return true;
         }

@@ -61,7 +61,7 @@ static bool meets_memory(const argus_knowledge_t *const knowledge, const argus_e
                          const int32_t by_cdeg) {
     for (int i = 0; i < echoes->count; i++) {
         argus_point_t at;
-        if (argus_echoes_near(echoes, knowledge, i, &at) && is_met(knowledge->robot, at, by_cdeg)) {
+        if (argus_echoes_beside(echoes, knowledge, i, &at) && is_met(knowledge->robot, at, by_cdeg)) {
             return true;
         }
     }

@@ -12,6 +12,9 @@
 #define FORGET_MS 60000u
 #define ABOUT_MM 1000      // a turn is asked for no farther
 #define LATELY_MS 5000u    // what was seen so near does not go away while a look is prepared
+#define NEARER_MM 10       // of two echoes of one place
+#define PAST_MM 40         // a sonar hears so far past a place: nothing stands there
+#define CONE_SLOPE 27      // tan 12 degrees, / 128: within 15 where the beam still tells
 #define BEHIND_MM 100      // an echo this far ahead of the centre is beside the robot already
 #define BY_TOUCH UINT8_MAX // no sonar: it is there for sure
 
@@ -24,11 +27,20 @@ static bool same_place(const argus_echo_t *const seen, const argus_point_t *cons
            argus_abs(seen->y_mm - at->y_mm) < SAME_PLACE_MM;
 }
 
+// It still stands, nearer to the robot than the new echo: a corner that the robot has passed, whose face is
+// heard behind it.
+static bool stays(const argus_echo_t *const seen, const argus_point_t *const at, const argus_point_t centre) {
+    const int32_t old_mm = argus_hypot(seen->x_mm - centre.x_mm, seen->y_mm - centre.y_mm);
+    const int32_t new_mm = argus_hypot(at->x_mm - centre.x_mm, at->y_mm - centre.y_mm);
+    return seen->stands && old_mm + NEARER_MM < new_mm;
+}
+
 // The slot that holds this place already, else a free one, else the oldest.
-static argus_echo_t *slot_for(argus_echoes_t *const self, const argus_point_t *const at) {
+static argus_echo_t *slot_for(argus_echoes_t *const self, const argus_point_t *const at,
+                              const argus_point_t centre) {
     ARGUS_ASSERT(self->count <= ARGUS_POINTS_MAX && self->next < ARGUS_POINTS_MAX);
     for (uint16_t i = 0; i < self->count; i++) {
-        if (same_place(&self->at[i], at)) {
+        if (same_place(&self->at[i], at) && !stays(&self->at[i], at, centre)) {
             return &self->at[i];
         }
     }
@@ -75,15 +87,16 @@ bool argus_echoes_have_seen(const argus_echoes_t *const self, const argus_knowle
     return has_seen(self, &at, true, knowledge->sip_ms, &centre, within_mm);
 }
 
-static void remember(argus_echoes_t *const self, const argus_point_t at, const uint8_t sonar, const bool near,
-                     const uint32_t now_ms) {
+static void remember(argus_echoes_t *const self, const argus_point_t centre, const argus_point_t at,
+                     const uint8_t sonar, const bool near, const uint32_t now_ms) {
     ARGUS_ASSERT(sonar < ARGUS_SONARS || sonar == BY_TOUCH);
     if (argus_abs(at.x_mm) > INT16_MAX || argus_abs(at.y_mm) > INT16_MAX) {
         return;
     }
     const bool again = sonar == BY_TOUCH || has_seen(self, &at, near, now_ms, &at, INT32_MAX);
-    argus_echo_t *const slot = slot_for(self, &at);
+    argus_echo_t *const slot = slot_for(self, &at, centre);
     slot->again = again;
+    slot->stands = again;
     slot->x_mm = (int16_t)at.x_mm;
     slot->y_mm = (int16_t)at.y_mm;
     slot->sonar = sonar;
@@ -97,17 +110,72 @@ static void mark_touches(argus_echoes_t *const self) {
     }
 }
 
+static bool is_about(const argus_echo_t *const seen, const argus_knowledge_t *const knowledge) {
+    return argus_abs(seen->x_mm - knowledge->pose.x_mm) < ABOUT_MM &&
+           argus_abs(seen->y_mm - knowledge->pose.y_mm) < ABOUT_MM;
+}
+
+static argus_point_t place_of(const argus_echo_t *const seen, const argus_knowledge_t *const knowledge) {
+    const argus_point_t off = {seen->x_mm - knowledge->pose.x_mm, seen->y_mm - knowledge->pose.y_mm};
+    return argus_in_frame(off, knowledge->pose.heading_cdeg);
+}
+
+// The place, robot frame, is in the cone of this sonar, and it hears something farther off. Silence is no
+// proof: a smooth wall sends no echo back.
+static bool hears_past(const argus_knowledge_t *const knowledge, const int sonar, const argus_point_t at) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    const argus_sonar_pose_t pose = argus_robot_pose(knowledge->robot, sonar);
+    const argus_point_t off = {at.x_mm - pose.x_mm, at.y_mm - pose.y_mm};
+    const argus_point_t seen = argus_in_frame(off, pose.heading_deg * 100);
+    return seen.x_mm > 0 && argus_abs(seen.y_mm) <= seen.x_mm * CONE_SLOPE / 128 &&
+           knowledge->sonar[sonar].reading_mm > seen.x_mm + PAST_MM;
+}
+
+static bool is_heard_past(const argus_knowledge_t *const knowledge, const argus_mask_t sonars,
+                          const argus_point_t at) {
+    for (int i = 0; i < knowledge->sonars; i++) {
+        if ((sonars >> i & 1u) != 0 && hears_past(knowledge, i, at)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Readings that tell where something is.
+static argus_mask_t telling(const argus_knowledge_t *const knowledge) {
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
+    unsigned mask = 0;
+    for (int i = 0; i < knowledge->sonars && !knowledge->rotating; i++) {
+        const bool tells = argus_usable(knowledge, i) && knowledge->sonar[i].health != ARGUS_SUSPECT;
+        mask |= tells ? 1u << i : 0u;
+    }
+    return (argus_mask_t)(mask & knowledge->fresh);
+}
+
+// What was heard past has gone, or was put on the axis of a cone and stands elsewhere in it.
+static void hear_past(argus_echoes_t *const self, const argus_knowledge_t *const knowledge,
+                      const argus_mask_t sonars) {
+    ARGUS_ASSERT(self->count <= ARGUS_POINTS_MAX);
+    for (uint16_t i = 0; i < self->count && sonars != 0; i++) {
+        argus_echo_t *const seen = &self->at[i];
+        if (seen->stands && is_about(seen, knowledge)) {
+            seen->stands = !is_heard_past(knowledge, sonars, place_of(seen, knowledge));
+        }
+    }
+}
+
 void argus_echoes_see(argus_echoes_t *const self, const argus_knowledge_t *const knowledge,
                       const uint32_t now_ms) {
     ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
+    const argus_mask_t sonars = telling(knowledge);
     argus_grid_see(&self->grid, knowledge);
     mark_touches(self);
+    hear_past(self, knowledge, sonars);
+    const argus_point_t centre = {knowledge->pose.x_mm, knowledge->pose.y_mm};
     for (int i = 0; i < knowledge->sonars; i++) {
-        const bool fresh = (knowledge->fresh >> i & 1u) != 0;
-        if (fresh && argus_usable(knowledge, i) && knowledge->sonar[i].health != ARGUS_SUSPECT &&
-            !knowledge->rotating && knowledge->sonar[i].reading_mm < REMEMBER_BELOW_MM) {
-            remember(self, argus_to_course(&knowledge->pose, argus_echo_robot(knowledge, i)), (uint8_t)i,
-                     knowledge->sonar[i].reading_mm <= ARGUS_PLACED_MM, now_ms);
+        if ((sonars >> i & 1u) != 0 && knowledge->sonar[i].reading_mm < REMEMBER_BELOW_MM) {
+            remember(self, centre, argus_to_course(&knowledge->pose, argus_echo_robot(knowledge, i)),
+                     (uint8_t)i, knowledge->sonar[i].reading_mm <= ARGUS_PLACED_MM, now_ms);
         }
     }
 }
@@ -128,7 +196,7 @@ void argus_echoes_forget(argus_echoes_t *const self, const int sonar) {
 }
 
 void argus_echoes_touched(argus_echoes_t *const self, const argus_point_t at, const uint32_t now_ms) {
-    remember(self, at, BY_TOUCH, true, now_ms);
+    remember(self, at, at, BY_TOUCH, true, now_ms);
     argus_grid_mark(&self->grid, at, true);
 }
 
@@ -181,14 +249,25 @@ bool argus_echoes_near(const argus_echoes_t *const self, const argus_knowledge_t
                        const int index, argus_point_t *const at) {
     ARGUS_ASSERT(index >= 0 && index < self->count);
     const argus_echo_t *const seen = &self->at[index];
-    const int32_t dx = seen->x_mm - knowledge->pose.x_mm;
-    const int32_t dy = seen->y_mm - knowledge->pose.y_mm;
-    if (!seen->again || knowledge->sip_ms - seen->seen_ms > LATELY_MS || argus_abs(dx) >= ABOUT_MM ||
-        argus_abs(dy) >= ABOUT_MM) {
+    if (!seen->again || knowledge->sip_ms - seen->seen_ms > LATELY_MS || !is_about(seen, knowledge)) {
         return false;
     }
-    *at = argus_in_frame((argus_point_t){dx, dy}, knowledge->pose.heading_cdeg);
+    *at = place_of(seen, knowledge);
     return true;
+}
+
+bool argus_echoes_beside(const argus_echoes_t *const self, const argus_knowledge_t *const knowledge,
+                         const int index, argus_point_t *const at) {
+    ARGUS_ASSERT(index >= 0 && index < self->count);
+    const argus_echo_t *const seen = &self->at[index];
+    if (argus_echoes_near(self, knowledge, index, at)) {
+        return true;
+    }
+    if (!seen->stands || knowledge->sip_ms - seen->seen_ms > FORGET_MS || !is_about(seen, knowledge)) {
+        return false;
+    }
+    *at = place_of(seen, knowledge);
+    return at->x_mm > -knowledge->robot->rear_mm && at->x_mm < knowledge->robot->front_mm;
 }
 
 int32_t argus_echoes_nearest_mm(const argus_echoes_t *const self, const argus_knowledge_t *const knowledge,
@@ -197,7 +276,7 @@ int32_t argus_echoes_nearest_mm(const argus_echoes_t *const self, const argus_kn
     int32_t nearest = argus_touches_nearest_mm(&self->touches, knowledge, back_mm);
     for (int i = 0; i < self->count; i++) {
         argus_point_t at;
-        if (argus_echoes_near(self, knowledge, i, &at)) {
+        if (argus_echoes_beside(self, knowledge, i, &at)) {
             nearest = argus_min(nearest, argus_hypot(at.x_mm + back_mm, at.y_mm));
         }
     }

@@ -15,7 +15,8 @@ typedef struct {
     int16_t x_mm;
     int16_t y_mm;
     uint8_t sonar;
-    bool again; // by two echoes at least: one may be crosstalk
+    bool again;  // by two echoes at least: one may be crosstalk
+    bool stands; // likewise, and no sonar has heard past it since
     uint32_t seen_ms;
 } argus_echo_t;
 
@@ -61,9 +62,12 @@ bool argus_echoes_have_seen(const argus_echoes_t *self, const argus_knowledge_t 
                             int32_t within_mm);
 
 // Whether this one was seen more than once, lately and near the robot; where, robot frame. 0 <= index <
-// count.
+// count. `beside`, what a turn is asked of: also one of the last minute that no sonar has heard past since.
+// What stands between two cones does not go away because none looks there.
 bool argus_echoes_near(const argus_echoes_t *self, const argus_knowledge_t *knowledge, int index,
                        argus_point_t *at);
+bool argus_echoes_beside(const argus_echoes_t *self, const argus_knowledge_t *knowledge, int index,
+                         argus_point_t *at);
 
 // The distance of what would be nearest to the robot's centre, were it `back_mm` farther back. What was seen
 // more than once in the last seconds counts, also where no sonar sees it now. INT32_MAX: nothing. Cost: one
