@@ -68,10 +68,11 @@ static void begin(argus_roundtrip_t *const self, const argus_sip_t *const sip, c
 }
 
 static void hear(argus_roundtrip_t *const self, const argus_session_t *const session) {
-    if (self->asks && (int32_t)(session->config_ms - self->again_ms) >= 0 && session->has_robot) {
+    const argus_setup_t *const setup = &session->setup;
+    if (self->asks && (int32_t)(setup->told_ms - self->again_ms) >= 0 && setup->told) {
         self->asks = false;
         self->answers = true;
-        self->took_ms = session->config_ms - self->asked_ms;
+        self->took_ms = setup->told_ms - self->asked_ms;
     }
 }
 

@@ -208,7 +208,6 @@ static void take_config(argus_session_t *self, uint32_t now_ms, const argus_pack
         take_late_config(self, &robot);
     }
     self->has_robot = true;
-    self->config_ms = now_ms;
     if (self->subclass[0] == '\0') { // some answer SYNC2 with a bare echo
         memcpy(self->name, robot.name, sizeof self->name);
         memcpy(self->robot_class, robot.robot_class, sizeof self->robot_class);

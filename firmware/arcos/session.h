@@ -53,7 +53,6 @@ typedef struct {
     uint32_t tried_ms;    // last CONFIG sent
     uint32_t spoke_ms;    // last packet handed out
     uint32_t heard_ms;    // last SIP
-    uint32_t config_ms;   // last CONFIGpac
     uint32_t gap_ms;      // length of the last stall
     uint32_t pause_ms;    // this back-off, or the next
     uint16_t attempts;    // since the link came up or the last session ended, this one included

@@ -85,14 +85,14 @@ void test_where_no_port_shows_config_is_asked_for(void) {
     uint8_t packet[ARGUS_PACKET_MAX];
     int asked = 0;
     argus_roundtrip_begin(&trip, true);
-    session.has_robot = true;
+    session.setup.told = true;
     for (uint32_t now_ms = 1000; now_ms < 9000; now_ms += 100) {
         session.sip.anport = 0;
         argus_roundtrip_sip(&trip, &session, &config, now_ms);
         while (argus_outbox_fetch(&session.outbox, packet, sizeof packet) > 0) {
             if (packet[3] == ARCOS_CMD_CONFIG) {
                 asked++;
-                session.config_ms = now_ms + 70;
+                session.setup.told_ms = now_ms + 70;
             }
         }
     }
