@@ -16,6 +16,7 @@
 #define LOOK_CDEG 6000  // a HEAD is looked at so far ahead
 #define LEAST_CDEG 1000 // ... and any other turn at least so far: little ones follow each other
 #define FREE_SIPS 10
+#define UNHEARD_S 2   // a robot that hears nothing for so long stands by itself
 #define SPARE_MM_S 40 // above what was given: how wheels keep a speed
 #define FALLS_MM_S 10 // in each SIP where it obeys: a third of the weakest brake
 #define SPARE_DEG_S 8
@@ -184,19 +185,6 @@ static void give_pair(const argus_grant_t *const grant, argus_hold_client_t *con
     }
 }
 
-static void give_speed(const argus_grant_t *const grant, argus_hold_client_t *const self,
-                       const argus_bound_t *const bound, const bool anyway) {
-    argus_given_t *const given = &self->given;
-    const int32_t mm_s = bounded(bound, self->wish.mm_s, given->moves ? 0 : given->mm_s);
-    set_speed(grant, self, self->setv_mm_s);
-    if ((anyway || given->moves || mm_s != given->mm_s) &&
-        argus_outbox_int(grant->out, ARCOS_CMD_VEL, mm_s)) {
-        given->mm_s = mm_s;
-        given->rolls = mm_s != 0;
-        given->moves = false;
-    }
-}
-
 static int32_t left_of(const argus_t *const core, const int32_t mm, const uint32_t odometer_mm) {
     const int32_t driven_mm = (int32_t)(core->knowledge.odometer_mm - odometer_mm);
     return mm < 0 ? argus_min(0, mm + driven_mm) : argus_max(0, mm - driven_mm);
@@ -210,6 +198,7 @@ static void send_move(const argus_grant_t *const grant, argus_hold_client_t *con
         given->rolls = given->moves = true;
         given->move_mm = mm;
         given->odometer_mm = grant->core->knowledge.odometer_mm;
+        given->move_ms = grant->core->now_ms;
     }
 }
 
@@ -220,6 +209,60 @@ static bool is_other(const argus_t *const core, const argus_hold_client_t *const
     const int32_t has_mm = argus_abs(left_of(core, given->move_mm, given->odometer_mm));
     const bool longer = has_mm + DONE_MM < argus_abs(left_mm) && mm > has_mm + MORE_MM;
     return !given->moves || longer || mm + LESS_MM < has_mm || mm_s < given->setv_mm_s;
+}
+
+static bool is_on(const argus_t *const core) {
+    return (core->knowledge.flags & ARCOS_FLAG_MOTORS) != 0;
+}
+
+// A robot that stands for longer than it would wait for us has lost the order.
+static bool is_lost(const argus_t *const core, const argus_given_t *const given) {
+    const argus_knowledge_t *const knowledge = &core->knowledge;
+    const bool rests = knowledge->vel_left_mm_s == 0 && knowledge->vel_right_mm_s == 0;
+    return rests && core->now_ms - given->move_ms > UNHEARD_S * 1000u + (uint32_t)core->latency.late_ms;
+}
+
+// What it was given of a way in this direction, and has not driven. An order without motors is none.
+static int32_t has_mm_of(const argus_t *const core, const argus_given_t *const given, const int32_t mm_s) {
+    const bool same_way = given->moves && (given->move_mm < 0) == (mm_s < 0);
+    return same_way && is_on(core) && !is_lost(core, given)
+               ? argus_abs(left_of(core, given->move_mm, given->odometer_mm))
+               : 0;
+}
+
+// How long a MOVE is to go out, 0: none. What goes out on a link that has become late acts so much later, and
+// counts from there: what the robot may drive until then is taken off.
+static int32_t more_mm(const int32_t way_mm, const int32_t has_mm, const int32_t mm_s) {
+    if (way_mm + LESS_MM < has_mm) {
+        return way_mm;
+    }
+    const int32_t mm = way_mm - argus_min(has_mm, mm_s * UNHEARD_S);
+    const int32_t least_mm = has_mm > DONE_MM ? has_mm + MORE_MM : DONE_MM;
+    return mm > least_mm ? mm : 0;
+}
+
+// A VEL goes on until the next order, however late that comes. So a robot that is told to go on is given the
+// way that is seen, and more of it as more is seen.
+static void give_speed(const argus_grant_t *const grant, argus_hold_client_t *const self,
+                       const argus_bound_t *const bound, const bool anyway) {
+    argus_given_t *const given = &self->given;
+    const int32_t mm_s = bounded(bound, self->wish.mm_s, given->mm_s);
+    const int32_t most_mm_s = argus_min(argus_abs(mm_s), self->setv_mm_s);
+    if (most_mm_s == 0) {
+        stand(grant, self, anyway);
+        return;
+    }
+    if (anyway) { // a SETV that was lost, too
+        given->setv_mm_s = 0;
+    }
+    const int32_t mm = more_mm(bound->way_mm, has_mm_of(grant->core, given, mm_s), most_mm_s);
+    if (mm > 0 && (anyway || is_on(grant->core))) {
+        send_move(grant, self, mm_s < 0 ? -mm : mm, most_mm_s);
+    } else {
+        set_speed(grant, self, most_mm_s);
+    }
+    given->mm_s = mm_s;
+    given->moves = given->moves && is_on(grant->core);
 }
 
 // A MOVE ends where it should without us, and is lengthened as more is seen.
@@ -234,6 +277,7 @@ static void give_move(const argus_grant_t *const grant, argus_hold_client_t *con
         stand(grant, self, anyway);
     } else if (anyway || is_other(grant->core, self, left_mm, mm, mm_s)) {
         send_move(grant, self, left_mm < 0 ? -mm : mm, mm_s);
+        self->given.mm_s = 0;
     }
 }
 
@@ -264,6 +308,15 @@ static argus_bound_t way_of(const argus_t *const core, argus_given_t *const give
     return bound;
 }
 
+// Of what has no end: where no way is left it is closed. VEL2 has no length, so a speed bounds it.
+static void bound_open(argus_bound_t *const bound, const bool paired) {
+    if (bound->speed_mm_s > 0 && bound->way_mm <= DONE_MM) {
+        *bound = (argus_bound_t){.speed_mm_s = 0, .why = ARGUS_BOUND_OBJECT};
+    } else if (paired) {
+        bound->speed_mm_s = argus_min(bound->speed_mm_s, argus_max(bound->way_mm / UNHEARD_S, STEP_MM_S));
+    }
+}
+
 static void give_way(const argus_grant_t *const grant, argus_hold_client_t *const self, const bool anyway) {
     const argus_wish_t *const wish = &self->wish;
     const bool moves = wish->way == ARGUS_WISH_MOVE;
@@ -273,7 +326,10 @@ static void give_way(const argus_grant_t *const grant, argus_hold_client_t *cons
         }
         return;
     }
-    const argus_bound_t bound = way_of(grant->core, &self->given, wants_ahead(grant->core, wish));
+    argus_bound_t bound = way_of(grant->core, &self->given, wants_ahead(grant->core, wish));
+    if (!moves) {
+        bound_open(&bound, wish->paired);
+    }
     if (moves || wish->mm_s != 0) {
         tell_way(grant, &self->given, &bound, moves ? self->setv_mm_s : wish->mm_s);
     }
@@ -466,7 +522,8 @@ static int32_t given_mm_s(const argus_given_t *const given, const int32_t setv_m
     if (!given->rolls) {
         return 0;
     }
-    return given->moves ? argus_max(setv_mm_s, given->setv_mm_s) : argus_abs(given->mm_s);
+    const bool by_move = given->moves && given->mm_s == 0;
+    return by_move ? argus_max(setv_mm_s, given->setv_mm_s) : argus_abs(given->mm_s);
 }
 
 // A HEAD turns as fast as SETRV lets it.

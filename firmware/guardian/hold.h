@@ -27,6 +27,7 @@ typedef struct {
     bool moves;           // ... by MOVE
     int32_t move_mm;      // MOVE, from there on
     uint32_t odometer_mm; // ... where it was given
+    uint32_t move_ms;     // ... and when
     int32_t setv_mm_s;    // SETV
     bool turn_held;       // RVEL 0 in the place of a turn
     bool has_head;        // HEAD

@@ -84,6 +84,26 @@ void test_vel_back_stands_before_a_wall(void) {
     drive_at_wall(-750);
 }
 
+// What goes to the robot ends by itself, whatever becomes of the next order: no VEL but 0, no matter how
+// often the client repeats its own, and few MOVEs.
+void test_vel_goes_out_with_an_end(void) {
+    static const int32_t speeds[] = {200, 400, 750, -200};
+    for (size_t k = 0; k < sizeof speeds / sizeof speeds[0]; k++) {
+        begin(2500, 2500, 2500);
+        for (int i = 0; i < 200; i++) {
+            client_say(&client, ARCOS_CMD_VEL, speeds[k]);
+            client_run(&client, 100, true);
+        }
+        for (int i = 0; i < robot.commands; i++) {
+            TEST_ASSERT_TRUE(robot.command[i].command != ARCOS_CMD_VEL || robot.command[i].argument == 0);
+        }
+        TEST_ASSERT_TRUE(robot_count_commands(&robot, ARCOS_CMD_MOVE, 0) > 0);
+        TEST_ASSERT_TRUE(robot_count_commands(&robot, ARCOS_CMD_MOVE, 0) < 12);
+        TEST_ASSERT_TRUE(robot.closest_mm > 40);
+        TEST_ASSERT_TRUE(robot.closest_mm < 260);
+    }
+}
+
 // S5: either end, until a sonar that looks there has heard an echo.
 void test_back_is_slow_where_nothing_was_ever_heard(void) {
     begin(2500, 9000, 9000);

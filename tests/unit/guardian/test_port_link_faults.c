@@ -33,9 +33,8 @@
 #define STANDS_MM_S 20
 #define STANDS_RAD_S 0.05
 #define OBEYS_MM 150
-// At the robot's own line a greater delay that comes up at once may use up what the guard leaves before a
-// wall (docs/guardian.md).
-#define LATE_MS 300u
+// At the robot's own line: after a longer silence it stands by itself.
+#define LATE_MS 2000u
 #define CLIENT_LATE_MS 5000u
 #define LAST_MS 6000u
 
