@@ -29,6 +29,8 @@ _BRIEF_HEAD: Final = 2
 """Bytes of brief() before those of the sonars."""
 _LISTED_LEAST: Final = 16
 _PACKET_MAX: Final = 256
+EVENT_FIELDS: Final = 8
+"""Room for the fields of an event in C."""
 _RECORD_MAX: Final = 65536
 _NO_SONAR: Final = -1
 _LEVELS: Final = ("OK", "WARN", "ERROR", "STALE")
@@ -395,6 +397,26 @@ class Core:
             values = [value - (value >> 31 << 32) for value in flat[at + 2 : at + width]]
             said.append((flat[at], flat[at + 1], self._event_of(values)))
         return Fed(taken, now.value, said)
+
+    def for_c(self) -> dict[str, int | None]:
+        """Where the core and the functions of a loop around it are, for C."""
+        functions = {
+            "receive": "argus_receive",
+            "process": "argus_process",
+            "transmit": "argus_transmit",
+            "event": "argus_shim_event",
+            "brief_of": "argus_shim_brief",
+        }
+        found = {
+            name: ctypes.cast(getattr(self._library, function), ctypes.c_void_p).value
+            for name, function in functions.items()
+        }
+        return found | {"core": ctypes.addressof(self._core), "brief_size": len(self._brief)}
+
+    def said(self, values: Sequence[int]) -> Iterator[CoreEvent]:
+        """Yield events as a loop in C has taken them, `EVENT_FIELDS` values each."""
+        for at in range(0, len(values), EVENT_FIELDS):
+            yield self._event_of(values[at : at + len(self._event_names)])
 
     @property
     def is_open(self) -> bool:

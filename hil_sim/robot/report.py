@@ -41,7 +41,12 @@ def sip(robot: Robot) -> Sip:
 
 
 def _flags(robot: Robot) -> int:
-    flags = FLAG["MOTORS"] if robot.drive.motors else 0
+    return other_flags(robot) | (FLAG["MOTORS"] if robot.drive.motors else 0)
+
+
+def other_flags(robot: Robot) -> int:
+    """Return the flags of a SIP without that of the motors."""
+    flags = 0
     for array in range(len(robot.table.orders)):
         if robot.ring.enabled[array]:
             flags |= FLAG[f"SONAR{array + 1}"]

@@ -92,7 +92,6 @@ class Robot(RobotState):
         self.estop_pressed = False
         self.estalled = False
         self.last_heard_ms = 0
-        self.anport = 0
         self.digout = 0
         self.battery_test_dv = 0
         self.fault_bumpers = 0
@@ -335,7 +334,17 @@ class Robot(RobotState):
 
     def _in_c(self) -> Ticks | None:
         """What lets sub-steps pass in C, if that may be."""
-        return self._ticks if self.log is None else None
+        return self._ticks if self.log is None and self.drive.is_plain else None
+
+    @property
+    def ticks(self) -> Ticks | None:
+        """The same, for a loop in C around sub-steps; it has the readings so far."""
+        ticks = self._in_c()
+        if ticks is not None:
+            ticks.hold(self._readings)  # type: ignore[arg-type]
+            self._readings.clear()
+            ticks.prepare()
+        return ticks
 
     def _forget_readings(self) -> None:
         self._gather()

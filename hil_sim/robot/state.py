@@ -113,12 +113,13 @@ class RobotState(ctypes.Structure):
     bumpers: int
     rear_segments: int
     fault_bumpers: int
+    anport: int
     connected: bool
     watchdog_stops: bool
     fires_in_turn: bool
     _fields_ = [
         ("now_ms", _L),
         ("last_heard_ms", _L),
-        *((name, _I) for name in ("bumpers", "rear_segments", "fault_bumpers")),
+        *((name, _I) for name in ("bumpers", "rear_segments", "fault_bumpers", "anport")),
         *((name, _B) for name in ("connected", "watchdog_stops", "fires_in_turn")),
     ]

@@ -142,7 +142,7 @@ static void done(drive_t *const drive, const step_t *const step) {
 
 // ---- stalls -----------------------------------------------------------------------------------------------
 
-static bool watchdog_expired(const parts_t *const parts) {
+bool argus_sim_watchdog_expired(const parts_t *const parts) {
     const robot_t *const robot = parts->robot;
     return robot->connected && robot->watchdog_stops &&
            robot->now_ms - robot->last_heard_ms > parts->watchdog_ms;
@@ -235,7 +235,7 @@ static bool go(const parts_t *const parts, const bool expired) {
 
 static bool move(const parts_t *const parts) {
     const drive_t *const drive = parts->drive;
-    const bool expired = watchdog_expired(parts);
+    const bool expired = argus_sim_watchdog_expired(parts);
     if (drive->v != 0 || drive->w != 0 || (drive->motors && !expired && has_set_point(drive))) {
         return go(parts, expired);
     }
@@ -310,7 +310,7 @@ static bool tick(const parts_t *const parts) {
 bool argus_sim_run(const parts_t *const parts, const double stop_ms, const double limit_ms) {
     robot_t *const robot = parts->robot;
     while ((double)(robot->now_ms + STEP_MS) <= limit_ms) {
-        if (!tick(parts)) {
+        if (!parts->ready || !tick(parts)) {
             return false;
         }
         if ((double)robot->now_ms >= stop_ms) {

@@ -38,7 +38,7 @@ typedef struct {
 
 typedef struct {
     int64_t now_ms, last_heard_ms;
-    int32_t bumpers, rear_segments, fault_bumpers;
+    int32_t bumpers, rear_segments, fault_bumpers, anport;
     bool connected, watchdog_stops, fires_in_turn;
 } robot_t;
 
@@ -89,7 +89,7 @@ enum { WAITS = 32 };
 typedef struct {
     robot_t *robot;
     drive_t *drive;
-    const settings_t *settings;
+    settings_t *settings;
     chassis_t *chassis;
     stall_t *stall;
     energy_t *energy;
@@ -106,10 +106,12 @@ typedef struct {
     int32_t bumper_mask, stalls_front, stalls_rear, waits;
     uint64_t afflicted; // sonars whose pings Python makes
     wait_t wait[WAITS];
-    bool sonar_on;
+    bool sonar_on, ready; // ready: false: each sub-step is for Python
 } parts_t;
 
 // Lets sub-steps pass until `stop_ms`, none beyond `limit_ms`; false: the next one is for Python.
 bool argus_sim_run(const parts_t *parts, double stop_ms, double limit_ms);
+
+bool argus_sim_watchdog_expired(const parts_t *parts);
 
 #endif

@@ -20,7 +20,7 @@ from hil_sim.robot.interfaces import Faults, Ring, SonarReading
 from hil_sim.robot.stall import StallMonitor
 from hil_sim.robot.state import RobotState
 from hil_sim.sonar import kernel
-from hil_sim.sonar.params import MIN_MM, NO_ECHO_MM
+from hil_sim.sonar.params import MIN_MM, NO_ECHO_MM, Reading
 from hil_sim.sonar.ring import RESUME_MS, SonarRing
 from hil_sim.tables.robot import RobotTable
 
@@ -52,6 +52,7 @@ class _Parts(ctypes.Structure):
         ("afflicted", ctypes.c_uint64),
         ("wait", _Wait * _WAITS),
         ("sonar_on", ctypes.c_bool),
+        ("ready", ctypes.c_bool),
     ]
 
 
@@ -123,19 +124,21 @@ class Ticks:
             stalls_rear=BUMPSTALL["REAR"],
             afflicted=0 if ring.is_plain else _ALL,
         )
-        self._address = ctypes.addressof(self._parts)
+        self.address = ctypes.addressof(self._parts)
 
     def run(self, stop_ms: float, limit_ms: float) -> bool:
         """Let sub-steps pass until `stop_ms`, none beyond `limit_ms`; False: the next one is for Python."""
+        self.prepare()
+        return self._run(self.address, stop_ms, limit_ms)
+
+    def prepare(self) -> None:
+        """Let C know what only Python changes; and what it has to leave to Python for now, which may be all."""
         ring, parts = self._ring, self._parts
-        if ring.switched or not self._drive.is_plain:
-            return False
-        if self._faults is not None and not self._await(self._faults):
-            return False
-        ring.hand_over()
-        parts.settings = ctypes.addressof(self._drive.settings)
-        parts.sonar_on = any(ring.enabled)
-        return self._run(self._address, stop_ms, limit_ms)
+        parts.ready = not ring.switched and (self._faults is None or self._await(self._faults))
+        if parts.ready:
+            ring.hand_over()
+            parts.settings = ctypes.addressof(self._drive.settings)
+            parts.sonar_on = any(ring.enabled)
 
     def _await(self, faults: FaultSet) -> bool:
         waits = faults.waits(self._clock.now_ms)
@@ -151,6 +154,14 @@ class Ticks:
     def heard(self) -> Sequence[SonarReading]:
         """Return the readings that came in since the last call."""
         return self._ring.take_heard()
+
+    def shown(self) -> Sequence[SonarReading]:
+        """Return the same, and leave them."""
+        return self._ring.take_heard(keep=True)
+
+    def hold(self, readings: Sequence[Reading]) -> None:
+        """Let C put these into the next SIP."""
+        self._ring.hold(readings)
 
 
 def ticks_of(robot: Parts) -> Ticks | None:

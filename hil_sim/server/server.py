@@ -131,6 +131,17 @@ class ArcosServer:
         """When `advance` next has something to send by itself; None while waiting for a client."""
         return self._next_sip_ms if self.state is State.CONNECTED else None
 
+    @next_due_ms.setter
+    def next_due_ms(self, due_ms: float) -> None:
+        self._next_sip_ms = due_ms
+
+    @property
+    def is_plain(self) -> bool:
+        """Nothing waits, nobody asked for more than SIPs, and nobody reads along."""
+        asked = self._encoders or self._io or self._sim_stat or self._joystick
+        rests = self.state is not State.CONNECTED or asked
+        return not (rests or self._out or self.unframer.pending or _LOG.isEnabledFor(logging.DEBUG))
+
     def receive(self, data: bytes, now_ms: float) -> None:
         """Take bytes that have arrived by now; answers are in `outgoing`."""
         self.advance(now_ms)

@@ -19,14 +19,14 @@ class Line:
     def __init__(self, baud: int) -> None:
         self.byte_ms = TIMING["BITS_PER_BYTE"] * 1000 / baud
         self.held: deque[tuple[float, bytes]] = deque()
-        self._free_ms = 0.0
+        self.free_ms = 0.0
 
     def push(self, data: bytes, now_ms: float) -> None:
         """Put a packet on the line; one that would wait too long is lost, as by a robot out of buffers."""
-        if self._free_ms - now_ms > _BACKLOG_MS:
+        if self.free_ms - now_ms > _BACKLOG_MS:
             return
-        self._free_ms = max(self._free_ms, now_ms) + len(data) * self.byte_ms
-        self.held.append((self._free_ms, data))
+        self.free_ms = max(self.free_ms, now_ms) + len(data) * self.byte_ms
+        self.held.append((self.free_ms, data))
 
     def pop(self, now_ms: float) -> Iterator[bytes]:
         """Yield the packets that are through, oldest first."""

@@ -56,6 +56,11 @@ class NotedRobot(Robot):
         self.noted = tuple(readings)
         return readings
 
+    def note_readings(self) -> None:
+        """Note the readings that a loop in C puts into a SIP."""
+        ticks = self._in_c()
+        self.noted = tuple(ticks.shown()) if ticks is not None else ()
+
     def _hit(self, moved_in: bool) -> None:
         super()._hit(moved_in)
         self.hits.append(Collision(self.now_ms / 1000, self.chassis.x, self.chassis.y, moved_in))

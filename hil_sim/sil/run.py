@@ -14,7 +14,7 @@ from functools import lru_cache
 from typing import Final
 
 from hil_sim.core import library as core_module
-from hil_sim.core.library import Core, setting_value
+from hil_sim.core.library import EVENT_FIELDS, Core, CoreEvent, setting_value
 from hil_sim.errors import InputError, SimError
 from hil_sim.faults.grammar import parse_fault
 from hil_sim.faults.kinds import Fault, LinkFault
@@ -22,7 +22,9 @@ from hil_sim.faults.link import LinkFaults
 from hil_sim.robot.interfaces import SonarReading
 from hil_sim.scenario.build import assemble
 from hil_sim.server.quirks import server_kind
+from hil_sim.server.server import ArcosServer
 from hil_sim.sil.line import Line, Packet
+from hil_sim.sil.loop import Loop
 from hil_sim.sil.mission import Mission
 from hil_sim.sil.noted import NotedFaults, NotedRobot
 from hil_sim.sil.outcome import Event, Outcome
@@ -39,6 +41,12 @@ _TURNING_DEG_S: Final = 1.0
 _PENDING_MS: Final = 20.0
 _GRID_MS: Final = 10.0
 _HEAD: Final = 2
+_IN_C: Final = (
+    "_turn", "_to_server", "_note", "_deliver", "_collect", "_look_at_robot", "_to_manager", "_serve_core", "_next_ms",
+)  # fmt: skip
+"""What loop.c does instead; a class that does one of these otherwise is left to Python."""
+_WORTH_MS: Final = 50.0
+"""For less than that it is not worth to change over to C."""
 
 
 @dataclass(frozen=True)
@@ -104,6 +112,7 @@ class Sil:
         self._verifying_ms = 0.0
         self._driving_ms = 0.0
         self._sips = 0
+        self._loop = self._build_loop()
         self.core.link_up(0)
         self._serve_core(0)
 
@@ -138,6 +147,107 @@ class Sil:
         if mission.record is not None:
             core.load_record(mission.record)
         return core
+
+    # ---- C
+
+    def _build_loop(self) -> Loop | None:
+        """Return the loop in C, if the mission may have turns that it can do."""
+        if (
+            self.robot.ticks is None
+            or self._disturb is not None
+            or type(self.server) is not ArcosServer
+            or type(self.core) is not Core
+            or any(getattr(type(self), name) is not getattr(Sil, name) for name in _IN_C)
+        ):
+            return None
+        loop = Loop(
+            (self.core, self.robot, self.server),
+            step=self._step_robot,
+            hear=self._hear,
+            look=self._look,
+            taken=self._taken,
+        )
+        state = loop.state
+        state.verifying, (state.over_first, state.over_second) = self._verifying, self._done
+        state.stops_at_goal = self.mission.stop_at_goal
+        return loop
+
+    def _run_loop(self, loop: Loop, end_ms: float) -> bool:
+        """Let turns pass in C; False: it has done none."""
+        server, state = self.server, loop.state
+        if (
+            end_ms - self.now_ms < _WORTH_MS
+            or loop.of != (self.core, self.robot, self.server)
+            or self.traffic is not None
+            or not server.is_plain
+            or not loop.prepare()
+        ):
+            return False
+        state.now_ms, state.next_sip_ms, state.core_due_ms = (
+            self.now_ms,
+            server.next_due_ms,
+            self._core_due_ms,
+        )
+        state.brief_ms, state.verifying_ms = self._brief_ms, self._verifying_ms
+        state.driving_ms, state.sips = self._driving_ms, server.sips
+        state.traces = self.trace is not None
+        state.brief[: len(self._brief)] = [*self._brief]
+        state.to_core.put(self._to_core)
+        state.to_robot.put(self._to_robot)
+        done = loop.run(end_ms)
+        state.to_core.give(self._to_core)
+        state.to_robot.give(self._to_robot)
+        self._absorb(loop)
+        loop.check()
+        return done
+
+    def _absorb(self, loop: Loop) -> None:
+        """Take over what the loop has come to."""
+        server, state = self.server, loop.state
+        self.now_ms, server.next_due_ms, self._core_due_ms = (
+            state.now_ms,
+            state.next_sip_ms,
+            state.core_due_ms,
+        )
+        self._driving_ms, self._sips = state.driving_ms, state.sips
+        server.sips = state.sips
+        server.unframer.counters.packets += state.packets
+        self._brief_ms, self._verifying_ms = state.brief_ms, state.verifying_ms
+        self._digest.update(memoryview(state.notes)[: state.notes_count])
+        for event in self.core.said(state.events[: EVENT_FIELDS * state.events_count]):
+            self._say(event)
+        for row in state.briefs[: state.briefs_count]:
+            self._note_health(bytes(row.data[: state.brief_size]), row.t_ms)
+        state.packets = state.notes_count = state.events_count = state.briefs_count = 0
+
+    def _step_robot(self) -> None:
+        """A sub-step that is Python's."""
+        self.robot.step()
+        self._prepare()
+
+    def _prepare(self) -> None:
+        assert self._loop is not None
+        if not self._loop.prepare():
+            self._loop.state.stop = True
+
+    def _hear(self) -> None:
+        self.robot.note_readings()
+
+    def _look(self) -> None:
+        """A SIP goes on the line."""
+        assert self._loop is not None
+        state, robot = self._loop.state, self.robot
+        packet = bytes(state.out[: state.out_length])
+        self._sightings.append((packet, Sighting(robot.now_ms / 1000, robot.pose, robot.noted)))
+
+    def _taken(self, data: bytes) -> None:
+        """The fault manager has taken a packet."""
+        assert self._loop is not None
+        self._absorb(self._loop)
+        self._show(data)
+        if self.trace is None or self.traffic is not None:
+            self._loop.state.stop = True
+        self._prepare()
 
     # ---- time
 
@@ -214,6 +324,10 @@ class Sil:
         self._note(Packet(self.now_ms, False, data))
         self.core.receive(now, data)
         self._serve_core(now)
+        self._show(data)
+
+    def _show(self, data: bytes) -> None:
+        """Let the trace see what is known of the SIP that the fault manager has taken."""
         while self._sightings and self.trace is not None:
             packet, sighting = self._sightings[0]
             if packet == data:
@@ -228,22 +342,25 @@ class Sil:
         for packet in core.transmit():
             self._to_robot.push(packet, self.now_ms)
         for event in core.events():
-            self.events.append(Event(event.t_ms / 1000, event.event, event.sonar, event.value, event.state))
+            self._say(event)
         brief = core.brief()
         if self._brief and self._brief[0] == self._verifying:
             self._verifying_ms += self.now_ms - self._brief_ms
         self._brief_ms = self.now_ms
         if brief != self._brief:
-            self._note_health(brief)
+            self._note_health(brief, self.now_ms)
 
-    def _note_health(self, brief: bytes) -> None:
+    def _say(self, event: CoreEvent) -> None:
+        self.events.append(Event(event.t_ms / 1000, event.event, event.sonar, event.value, event.state))
+
+    def _note_health(self, brief: bytes, now_ms: float) -> None:
         before, self._brief = self._brief, brief
         managed = (len(brief) - _HEAD) // 2
         for k in range(min(managed, len(self.health))):
             at, kind = _HEAD + k, _HEAD + managed + k
             if not before or (brief[at], brief[kind]) != (before[at], before[kind]):
                 names = core_module.health_name(brief[at]), core_module.kind_name(brief[kind])
-                self.health[k].append((self.now_ms / 1000, *names))
+                self.health[k].append((now_ms / 1000, *names))
 
     @property
     def mode(self) -> str:
@@ -261,7 +378,8 @@ class Sil:
 
     def _run_until_ms(self, end_ms: float) -> None:
         while (due := self._next_ms()) <= end_ms:
-            self._turn(due)
+            if self._loop is None or not self._run_loop(self._loop, end_ms):
+                self._turn(due)
             if self._is_over:
                 return
         self.now_ms = max(self.now_ms, end_ms)

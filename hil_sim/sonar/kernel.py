@@ -63,6 +63,8 @@ _FUNCTIONS: Final[dict[str, tuple[Any, tuple[Any, ...]]]] = {
     "argus_sim_place": (None, (ctypes.c_void_p,) * 5),
     "argus_sim_echo_range": (ctypes.c_int32, (_HANDLE, *_PLACE, ctypes.c_double, ctypes.c_void_p)),
     "argus_sim_run": (ctypes.c_bool, (ctypes.c_void_p, ctypes.c_double, ctypes.c_double)),
+    "argus_sim_loop": (None, (ctypes.c_void_p, ctypes.c_double)),
+    "argus_sim_loop_size": (ctypes.c_size_t, ()),
     "argus_sim_echo_ping": (
         ctypes.c_int32,
         (_HANDLE, ctypes.c_int32, *_PLACE, ctypes.c_double, ctypes.c_double, ctypes.c_void_p),

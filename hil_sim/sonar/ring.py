@@ -199,9 +199,13 @@ class SonarRing(RingState):
             self._under_way.put(self._pending, self._kinds)
             self._pending.clear()
 
-    def take_heard(self) -> list[Reading]:
+    def take_heard(self, *, keep: bool = False) -> list[Reading]:
         """Return the readings that C has brought in since the last call."""
-        return self._in.take(self._kinds) if self._in.count else []
+        return self._in.take(self._kinds, keep=keep) if self._in.count else []
+
+    def hold(self, readings: Sequence[Reading]) -> None:
+        """Let C keep these behind those that it has brought in."""
+        self._in.put(readings, self._kinds)
 
     def _take_back(self) -> None:
         """Go on with the readings under way that C has left."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Rule: sub-steps in C (tick.c) leave robot, line and fault manager bit by bit as those in Python do."""
+"""Rule: sub-steps (tick.c) and turns (loop.c) in C leave robot, line and fault manager bit by bit as Python does."""
 
 from __future__ import annotations
 
@@ -10,9 +10,11 @@ import pytest
 
 from hil_sim.faults.execute import FaultSet
 from hil_sim.faults.grammar import parse_fault
+from hil_sim.faults.kinds import SonarFault
 from hil_sim.robot import robot as robot_module
 from hil_sim.sil import Mission, Sil
 from hil_sim.sil.outcome import Outcome
+from hil_sim.sil.run import Sighting, Trace
 from hil_sim.sonar import kernel
 from hil_sim.tables.robot import robot_table
 from hil_sim.world.files import load_world, world_names
@@ -59,17 +61,46 @@ def mission(seed: int) -> Mission:
     )
 
 
+def noted(seen: list[Any]) -> Trace:
+    def trace(sil: Sil, sighting: Sighting) -> None:
+        seen.append(
+            (sighting, sil.now_ms, sil.mode, sil.state_of_mission, len(sil.events), sil.core.status())
+        )
+        if len(seen) == 30 and isinstance(sil.robot.faults, FaultSet):
+            sil.robot.faults.inject(fault("off:4"))
+
+    return trace
+
+
+def fault(text: str) -> SonarFault:
+    made = parse_fault(text, robot_table())
+    assert isinstance(made, SonarFault)
+    return made
+
+
 def run(one: Mission, monkeypatch: pytest.MonkeyPatch, *, in_c: bool) -> tuple[Outcome, Any, Any]:
+    seen: list[Any] = []
     with monkeypatch.context() as patch:
         if not in_c:
             patch.setattr(robot_module, "ticks_of", lambda _: None)
-        sil = Sil(one)
+        sil = Sil(one, trace=noted(seen) if one.seed % 3 == 1 else None)
+        pieces = random.Random(one.seed)
+        while one.seed % 3 == 2 and not sil.over:
+            sil.run_until(sil.now_ms / 1000 + pieces.choice((0.004, 0.1, 0.37, 1.0)))
+            seen.append((sil.now_ms, sil.mode, len(sil.events), sil.robot.pose, sil.server.sips))
         outcome = sil.run()
     robot, chassis = sil.robot, sil.robot.chassis
     places = [robot.pose_at(robot.now_ms - back) for back in range(0, 600, 7)]
     body = chassis.x, chassis.y, chassis.th, chassis.odo_x, chassis.odo_y, chassis.odo_th, chassis.left_mm
     speeds = robot.drive.v, robot.drive.w, robot.drive.ahead, robot.drive.turn_left, robot.stall.take()
-    return outcome, (*body, *speeds, robot.state(), places), robot.take_readings()
+    counts = (
+        sil.server.sips,
+        sil.server.unframer.counters,
+        robot.anport,
+        robot.last_heard_ms,
+        sil.core.status(),
+    )
+    return outcome, (*body, *speeds, robot.state(), places, counts, robot.take_readings()), seen
 
 
 def compare(seeds: range, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -108,10 +139,43 @@ def test_most_sub_steps_of_a_plain_drive_are_in_c(monkeypatch: pytest.MonkeyPatc
 
     original = robot_module.Robot.step
     monkeypatch.setattr(robot_module.Robot, "step", counted)
-    sil = Sil(Mission("office", ((2300.0, 1000.0),), limit_s=30.0))
-    outcome = sil.run()
+    turns = 0
+
+    def counted_turn(self: Sil, now_ms: float) -> None:
+        nonlocal turns
+        turns += 1
+        turn(self, now_ms)
+
+    turn = Sil._turn
+    monkeypatch.setattr(Sil, "_turn", counted_turn)
+    outcome = Sil(Mission("office", ((2300.0, 1000.0),), limit_s=30.0)).run()
     assert outcome.driven_mm > 1000
     assert steps < 30.0 * 100 / 5, f"{steps} of 3000 in Python"
+    assert turns < 30.0 * 50 / 5, f"{turns} of some 1500 in Python"
+
+
+def test_an_error_in_a_trace_comes_out() -> None:
+    def trace(sil: Sil, _sighting: Sighting) -> None:
+        if sil.now_ms > 3000:
+            raise ZeroDivisionError
+
+    sil = Sil(Mission("office", ((2300.0, 1000.0),), limit_s=30.0), trace=trace)
+    with pytest.raises(ZeroDivisionError):
+        sil.run()
+    assert 3000 < sil.now_ms < 3200
+
+
+def test_a_class_of_its_own_has_its_own_turns() -> None:
+    class Own(Sil):
+        turns = 0
+
+        def _turn(self, now_ms: float) -> None:
+            self.turns += 1
+            super()._turn(now_ms)
+
+    sil = Own(Mission("office", ((2300.0, 1000.0),), limit_s=5.0))
+    sil.run()
+    assert sil.turns > 100
 
 
 def test_what_faults_wait_for_is_known() -> None:
