@@ -31,8 +31,12 @@ def test_all_reached_is_told_in_one_line() -> None:
         (100, 100, 10, "mcdc of all: 55.00 %"),
     ],
 )
-def test_too_little_of_all_fails(lines: int, branches: int, mcdc: int, told: str) -> None:
+def test_too_little_of_all_fails(
+    lines: int, branches: int, mcdc: int, told: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Each measure has its own floor."""
+    least = {"lines": 90.0, "branches": 90.0, "mcdc": 60.0, "branches_of_a_file": 0.0}
+    monkeypatch.setattr(coverage, "floors", lambda: least)
     full = File("firmware/a.c", Reached(100, 100), Reached(100, 100), Reached(100, 100))
     poor = File("firmware/b.c", Reached(lines, 100), Reached(branches, 100), Reached(mcdc, 100))
     with pytest.raises(StageFailed, match=told):
