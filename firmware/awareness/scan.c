@@ -7,15 +7,14 @@
 
 #define SQUARE_RADIAN ((int64_t)ARGUS_RADIAN_CDEG * ARGUS_RADIAN_CDEG)
 
-// What a sector returns, mm; ARGUS_NO_ECHO_MM where there is no such sector.
-static int32_t return_mm(const argus_knowledge_t *const knowledge, const int sector) {
-    const bool there =
-        sector >= 0 && sector < knowledge->sonars && argus_robot_is_sector(knowledge->robot, sector);
-    return there ? argus_min(knowledge->sonar[sector].reading_mm, ARGUS_NO_ECHO_MM) : ARGUS_NO_ECHO_MM;
-}
-
 static bool is_sector(const argus_knowledge_t *const knowledge, const int sector) {
     return sector >= 0 && sector < knowledge->sonars && argus_robot_is_sector(knowledge->robot, sector);
+}
+
+// What a sector returns, mm; ARGUS_NO_ECHO_MM where there is no such sector.
+static int32_t return_mm(const argus_knowledge_t *const knowledge, const int sector) {
+    return is_sector(knowledge, sector) ? argus_min(knowledge->sonar[sector].reading_mm, ARGUS_NO_ECHO_MM)
+                                        : ARGUS_NO_ECHO_MM;
 }
 
 // The foot of a wall lies towards the sector that sees it nearer. Sectors take what is nearest in them, so

@@ -385,14 +385,23 @@ static void step(const argus_t *const self, const int32_t way_mm, argus_intent_t
     intent->speed_mm_s = self->config.step_speed_mm_s;
 }
 
+static void end_way(argus_intent_t *const intent) {
+    intent->base = ARGUS_BASE_DROP;
+    intent->act = ARGUS_DO_DECIDE;
+}
+
 // One MOVE, then idle again.
 static void jog_on(const argus_t *const self, const argus_guard_t *const guard, argus_travel_t *const mine,
                    argus_intent_t *const intent) {
     const int32_t seen_mm = argus_guard_seen_mm(guard);
+    const int32_t ahead_mm = argus_guard_ahead_mm(guard, seen_mm);
     if (seen_mm < mine->jog_mm) {
         look_ahead(self, mine, intent);
-    } else {
-        step(self, argus_min(mine->jog_mm, argus_guard_ahead_mm(guard, seen_mm)), intent);
+    } else if (ahead_mm > 0) {
+        step(self, argus_min(mine->jog_mm, ahead_mm), intent);
+    } else { // no room: the step is over before it began
+        mine->jog_mm = 0;
+        end_way(intent);
     }
 }
 
@@ -415,11 +424,6 @@ static void step_ahead(const argus_t *const self, const argus_travel_t *const mi
     step(self, argus_min(left_mm(self, mine), self->config.step_mm), intent);
     argus_to_say(intent, ARGUS_EV_STEP, ARGUS_NO_SONAR, intent->mm);
     intent->moves_on = true;
-}
-
-static void end_way(argus_intent_t *const intent) {
-    intent->base = ARGUS_BASE_DROP;
-    intent->act = ARGUS_DO_DECIDE;
 }
 
 // The sweep is done and the robot is back on its heading: the compensating and the direct readings decide.
