@@ -341,6 +341,8 @@ class Robot(RobotState):
         """The same, for a loop in C around sub-steps; it has the readings so far."""
         ticks = self._in_c()
         if ticks is not None:
+            # Those of Python may be older than those that C has: all go back in their order.
+            self._gather()
             ticks.hold(self._readings)  # type: ignore[arg-type]
             self._readings.clear()
             ticks.prepare()

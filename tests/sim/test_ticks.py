@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from hil_sim.errors import SimError
 from hil_sim.faults.execute import FaultSet
 from hil_sim.faults.grammar import parse_fault
 from hil_sim.faults.kinds import SonarFault
@@ -16,7 +17,7 @@ from hil_sim.sil import Mission, Sil
 from hil_sim.sil.outcome import Outcome
 from hil_sim.sil.run import Sighting, Trace
 from hil_sim.sonar import kernel
-from hil_sim.tables.robot import robot_table
+from hil_sim.tables.robot import DEFAULT_ROBOT, robot_table
 from hil_sim.world.files import load_world, world_names
 from hil_sim.world.movers import Person
 
@@ -30,10 +31,11 @@ FAULTS = (
 PHYSICS = ("", "", "", "rough-day", "recorded", "slip=0.1", "odometry_scale=0.02,odometry_drift_deg_m=1")
 
 
-def usable(text: str) -> bool:
+def usable(text: str, robot: str = DEFAULT_ROBOT) -> bool:
+    """Whether a robot has the sonars of a fault."""
     try:
-        parse_fault(text, robot_table())
-    except Exception:
+        parse_fault(text, robot_table(robot))
+    except SimError:
         return False
     return True
 
@@ -46,16 +48,18 @@ def mission(seed: int) -> Mission:
     points = [(p.x_mm, p.y_mm) for p in world.goals.values()] or [(world.start.x_mm + 1000, world.start.y_mm)]
     x, y = world.start.x_mm, world.start.y_mm
     people = (Person(((x + 1500.0, y - 300.0), (x + 1500.0, y + 900.0))),) if rng.random() < 0.1 else ()
+    robot = rng.choice(("p3dx-sh", "p3dx-sh", "p3at-sh", "amigo-sh", "peoplebot-sh"))
+    faults = [text for text in FAULTS if usable(text, robot)]
     return Mission(
         name,
         tuple(rng.sample(points, rng.randint(1, len(points)))),
         seed=seed,
         sonar={} if rng.random() < 0.6 else {"specular": False, "crosstalk": 0.05, "margin_db": 60.0},
         limit_s=LIMIT_S,
-        robot=rng.choice(("p3dx-sh", "p3dx-sh", "p3at-sh", "amigo-sh", "peoplebot-sh")),
+        robot=robot,
         quirks="mobilesim" if rng.random() < 0.05 else "robot",
         physics=rng.choice(PHYSICS),
-        faults=tuple(rng.sample(FAULTS, rng.choice((0, 0, 1, 2)))),
+        faults=tuple(rng.sample(faults, rng.choice((0, 0, 1, 2)))),
         movers=people,
         config={"profile": rng.choice(("argus", "paper"))},
     )
@@ -117,6 +121,13 @@ def compare(seeds: range, monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_missions_are_alike(monkeypatch: pytest.MonkeyPatch) -> None:
     compare(range(FEW), monkeypatch)
+
+
+@pytest.mark.parametrize("seed", [682, 1017])
+def test_readings_of_both_keep_their_order(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A sub-step of Python's between some of C's, all for one SIP."""
+    one = mission(seed)
+    assert run(one, monkeypatch, in_c=True) == run(one, monkeypatch, in_c=False), f"seed {seed}: {one}"
 
 
 @pytest.mark.soak
