@@ -21,6 +21,7 @@ DEBUG: Final = BUILD / "debug"
 WORK: Final = BUILD / "mutation"
 UNIT: Final = ROOT / "tests/unit"
 TEST_LIMIT_S: Final = 120.0
+TOLD_EACH: Final = 20
 """A mutant that hangs is found, too: many times what a short test takes."""
 SWAPS: Final = (
     (r" < ", " <= "),
@@ -126,14 +127,19 @@ def link_command(test: str, mutated: Path, program: Path) -> list[str]:
     return [*words[: words.index("-o")], str(mutated), *words[words.index("-o") :]]
 
 
+def tests_in(folder: str) -> list[Path]:
+    """Return the unit tests of a folder of firmware/."""
+    return sorted((UNIT / folder).glob("test_*.c"))
+
+
 def tests_of(file: Path, widely: bool) -> list[str]:
     """Return the tests to ask, those that mirror FILE first, then those of its folder; WIDELY: then all of the core."""
     folder = file.parent.name
-    own = [path for path in sorted((UNIT / folder).glob("test_*.c")) if is_own(path.stem, file.stem)]
-    near = [path for path in sorted((UNIT / folder).glob("test_*.c")) if path not in own]
-    folders = sorted(path.name for path in (ROOT / "firmware").iterdir() if path.name != folder)
-    far = [path for name in folders for path in sorted((UNIT / name).glob("test_*.c"))] if widely else []
-    names = [f"{path.parent.name}.{path.stem}" for path in (*own, *near, *far)]
+    paths = sorted(tests_in(folder), key=lambda path: not is_own(path.stem, file.stem))
+    if widely:
+        others = sorted(path.name for path in (ROOT / "firmware").iterdir() if path.name != folder)
+        paths += [path for name in others for path in tests_in(name)]
+    names = [f"{path.parent.name}.{path.stem}" for path in paths]
     return [name for name in names if (DEBUG / "tests/unit" / name).exists()]
 
 
@@ -188,16 +194,32 @@ def chosen(files: Sequence[str], sample: int, seed: int) -> list[Mutant]:
 
 def tell(fates: dict[Mutant, str]) -> None:
     """Print the score of each file and who survived."""
-    killed_in_all = judged_in_all = 0
+    judged = {mutant: bool(fate) for mutant, fate in fates.items() if fate != "same"}
     for file in dict.fromkeys(mutant.file for mutant in fates):
-        own = [fate for mutant, fate in fates.items() if mutant.file == file and fate != "same"]
-        killed = sum(bool(fate) for fate in own)
-        killed_in_all, judged_in_all = killed_in_all + killed, judged_in_all + len(own)
-        print(f"  {shown(file):<40} {killed:4} of {len(own):4} killed")
-    for mutant in (mutant for mutant, fate in fates.items() if not fate):
-        print(f"  survived: {mutant}")
-    share = 100 * killed_in_all / judged_in_all if judged_in_all else 0.0
-    print(f"  {killed_in_all} of {judged_in_all} killed, {share:.1f} %")
+        own = [killed for mutant, killed in judged.items() if mutant.file == file]
+        print(f"  {shown(file):<40} {sum(own):4} of {len(own):4} killed")
+    for mutant, killed in judged.items():
+        if not killed:
+            print(f"  survived: {mutant}")
+    killed_in_all = sum(judged.values())
+    share = 100 * killed_in_all / len(judged) if judged else 0.0
+    print(f"  {killed_in_all} of {len(judged)} killed, {share:.1f} %")
+
+
+def fates_of(mutants: Sequence[Mutant], widely: bool, jobs: int) -> dict[Mutant, str]:
+    """Return who killed each; tell how far it is. Interrupted, it ends with the mutants at work."""
+    pool = concurrent.futures.ThreadPoolExecutor(jobs)
+    try:
+        waiting = {
+            pool.submit(fate, mutant, place, tests_of(mutant.file, widely)): mutant
+            for place, mutant in enumerate(mutants)
+        }
+        for count, _ in enumerate(concurrent.futures.as_completed(waiting), 1):
+            if count % TOLD_EACH == 0:
+                say(f"{count} of {len(mutants)} mutants tried")
+        return {mutant: job.result() for job, mutant in waiting.items()}
+    finally:
+        pool.shutdown(cancel_futures=True)
 
 
 def do_mutate(args: argparse.Namespace) -> int:
@@ -206,14 +228,11 @@ def do_mutate(args: argparse.Namespace) -> int:
         raise Stop(
             "build/debug is not built by ninja: tools/dev build debug, with ninja installed", EXIT_SETUP
         )
+    if args.sample < 0 or args.jobs < 1:
+        raise Stop("--sample is 0 or more, --jobs 1 or more", EXIT_USAGE)
     mutants = chosen(args.file, args.sample, args.seed)
     say(f"{len(mutants)} mutants, seed {args.seed}")
-    with concurrent.futures.ThreadPoolExecutor(args.jobs) as pool:
-        jobs = [
-            pool.submit(fate, mutant, place, tests_of(mutant.file, args.widely))
-            for place, mutant in enumerate(mutants)
-        ]
-    tell({mutant: job.result() for mutant, job in zip(mutants, jobs, strict=True)})
+    tell(fates_of(mutants, args.widely, args.jobs))
     return 0
 
 
