@@ -51,3 +51,41 @@ void test_wheels_that_keep_a_speed_obey(void) {
         TEST_ASSERT_FALSE(sip(300, k % 2 == 0 ? 330 : 270, 0));
     }
 }
+
+// An eighth above the order, and what is spared, is kept; one more is not.
+void test_how_much_faster_is_too_fast(void) {
+    for (int given = 0; given <= 750; given += 8) {
+        setUp();
+        for (int k = 0; k < 20; k++) {
+            TEST_ASSERT_FALSE(sip(given, given + given / 8 + 40, 0));
+        }
+        int found = 0;
+        for (int k = 0; k < 4; k++) {
+            found += sip(given, given + given / 8 + 41, 0);
+        }
+        TEST_ASSERT_EQUAL_INT(1, found);
+    }
+}
+
+// However late the link is, it is found.
+void test_no_lateness_hides_it_for_ever(void) {
+    int sips = 1;
+    while (!sip(0, 300, 1000000) && sips < 1000) {
+        sips++;
+    }
+    TEST_ASSERT_EQUAL_INT(255, sips);
+}
+
+// Given 10 mm/s a SIP as the weakest brake: one that loses 10 obeys for good, one that loses 9 does not at
+// once.
+void test_the_weakest_brake_is_the_limit(void) {
+    for (int k = 0; k < 70; k++) {
+        TEST_ASSERT_FALSE(sip(0, 750 - 10 * k, 0));
+    }
+    setUp();
+    int sips = 1;
+    while (!sip(0, 750 - 9 * sips, 0) && sips < 50) {
+        sips++;
+    }
+    TEST_ASSERT_EQUAL_INT(4, sips);
+}

@@ -36,11 +36,35 @@ void test_what_is_dropped_is_counted_once_a_second(void) {
 }
 
 void test_orders_wait_for_the_next_sip(void) {
-    int passed = 0;
-    for (int i = 0; i < 100; i++) {
-        passed += argus_limit_order(&limit);
+    for (int sip = 0; sip < 3; sip++) {
+        int passed = 0;
+        for (int i = 0; i < 100; i++) {
+            passed += argus_limit_order(&limit);
+        }
+        TEST_ASSERT_EQUAL_INT(10, passed);
+        argus_limit_sip(&limit);
     }
-    TEST_ASSERT_EQUAL_INT(10, passed);
-    argus_limit_sip(&limit);
-    TEST_ASSERT_TRUE(argus_limit_order(&limit));
+}
+
+void test_words_come_back_after_a_second(void) {
+    for (uint32_t t_ms = 1000; t_ms <= 4000; t_ms += 1000) {
+        int passed = 0;
+        for (int i = 0; i < 20; i++) {
+            passed += argus_limit_word(&limit);
+        }
+        TEST_ASSERT_EQUAL_INT(5, passed);
+        TEST_ASSERT_EQUAL_UINT32(15, argus_limit_second(&limit, t_ms));
+        TEST_ASSERT_EQUAL_UINT32(0, argus_limit_second(&limit, t_ms + 999));
+    }
+}
+
+// From full to empty, after ten seconds and after any longer time.
+void test_after_long_all_of_it_is_there_again(void) {
+    static const uint32_t after_ms[] = {9999, 10000, 10001, 20000, 0x80000000u};
+    for (unsigned i = 0; i < sizeof after_ms / sizeof after_ms[0]; i++) {
+        setUp();
+        TEST_ASSERT_TRUE(argus_limit_pass(&limit, 0, 400));
+        TEST_ASSERT_FALSE(argus_limit_pass(&limit, 0, 1));
+        TEST_ASSERT_TRUE(argus_limit_pass(&limit, after_ms[i], 400));
+    }
 }

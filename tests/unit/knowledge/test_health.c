@@ -87,7 +87,7 @@ void test_failures_and_relapses_are_counted(void) {
 }
 
 void test_a_failure_after_a_mission_with_one_is_a_relapse(void) {
-    k.sonar[ME].disabled_before = 3;
+    k.sonar[ME].disabled_before = 1;
     set(ARGUS_CHANGE_DISABLED, ARGUS_KIND_OFF);
     TEST_ASSERT_EQUAL(1, k.sonar[ME].relapses);
 }
@@ -105,4 +105,22 @@ void test_the_others_are_let_be(void) {
     set(ARGUS_CHANGE_DISABLED, ARGUS_KIND_OFF);
     k.sonar[ME] = before.sonar[ME];
     TEST_ASSERT_EQUAL_MEMORY(&before, &k, sizeof k);
+}
+
+// What counts over missions: a name of a fault. A suspicion without one, or its end, is none.
+void test_a_mission_in_which_a_fault_was_named_is_remembered_until_it_is_forgiven(void) {
+    set(ARGUS_CHANGE_SUSPECTED, ARGUS_KIND_OFF);
+    TEST_ASSERT_FALSE(k.sonar[ME].named);
+    set(ARGUS_CHANGE_NAMED, ARGUS_KIND_NONE);
+    TEST_ASSERT_FALSE(k.sonar[ME].named);
+    set(ARGUS_CHANGE_NAMED, ARGUS_KIND_OFF);
+    TEST_ASSERT_TRUE(k.sonar[ME].named);
+    set(ARGUS_CHANGE_CLEARED, ARGUS_KIND_NONE);
+    TEST_ASSERT_TRUE(k.sonar[ME].named);
+    k.sonar[ME].missions_named = 2;
+    argus_health_forgive(&k, ME);
+    TEST_ASSERT_FALSE(k.sonar[ME].named);
+    TEST_ASSERT_EQUAL(0, k.sonar[ME].missions_named);
+    set(ARGUS_CHANGE_DISABLED, ARGUS_KIND_OFF);
+    TEST_ASSERT_TRUE(k.sonar[ME].named);
 }
