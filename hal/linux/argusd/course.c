@@ -22,9 +22,9 @@ bool course_parse_point(const char *text, argus_point_t *point, char *message, s
                            text);
     }
     memcpy(x, text, length);
-    if (!text_number(x, &point->x_mm) || !text_number(comma + 1, &point->y_mm)) {
-        return text_refuse(message, capacity, "'%.40s' is no waypoint; write two whole numbers, x_mm,y_mm",
-                           text);
+    if (!text_length_mm(x, &point->x_mm) || !text_length_mm(comma + 1, &point->y_mm)) {
+        return text_refuse(message, capacity,
+                           "'%.40s' is no waypoint; write X,Y in whole mm, or with a unit as 2m,0", text);
     }
     const int32_t limit = ARGUS_COURSE_LIMIT_MM;
     if (point->x_mm < -limit || point->x_mm > limit || point->y_mm < -limit || point->y_mm > limit) {

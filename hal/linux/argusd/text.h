@@ -27,4 +27,8 @@ __attribute__((format(printf, 3, 4))) bool text_refuse(char *buffer, size_t capa
 // not fit.
 bool text_number(const char *text, int32_t *value);
 
+// A length in mm: a whole number, or a decimal one with its unit, as 1500, 2m, 1.5m, -20cm or 300mm, rounded
+// to whole mm; else as above.
+bool text_length_mm(const char *text, int32_t *mm);
+
 #endif

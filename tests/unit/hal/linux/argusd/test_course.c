@@ -37,6 +37,29 @@ void test_a_course_is_read(void) {
     TEST_ASSERT_EQUAL_INT32(30000, course.point[2].y_mm);
 }
 
+// As argusctl takes them.
+void test_units_are_read(void) {
+    const char text[] = "2m,0\n1.5m,-20cm\n+300mm, -.25m \n0.0014m,0.0016m\n-2.5cm,7.m\n";
+    static const argus_point_t expected[] = {{2000, 0}, {1500, -200}, {300, -250}, {1, 2}, {-25, 7000}};
+    TEST_ASSERT_TRUE_MESSAGE(read_bytes(text, sizeof text - 1), message);
+    TEST_ASSERT_EQUAL_UINT16(5, course.count);
+    for (int i = 0; i < 5; i++) {
+        TEST_ASSERT_EQUAL_INT32(expected[i].x_mm, course.point[i].x_mm);
+        TEST_ASSERT_EQUAL_INT32(expected[i].y_mm, course.point[i].y_mm);
+    }
+    refused("m,0\n", "c.csv:1: 'm,0' is no waypoint");
+    refused("-m,0\n", "c.csv:1: '-m,0' is no waypoint");
+    refused(".m,0\n", "c.csv:1: '.m,0' is no waypoint");
+    refused("1..5m,0\n", "c.csv:1: '1..5m,0' is no waypoint");
+    refused("1-5m,0\n", "c.csv:1: '1-5m,0' is no waypoint");
+    refused("2 m m,0\n", "c.csv:1: '2 m m,0' is no waypoint");
+    refused("2km,0\n", "c.csv:1: '2km,0' is no waypoint");
+    refused("1e3m,0\n", "c.csv:1: '1e3m,0' is no waypoint");
+    refused("31m,0\n", "c.csv:1: 31000,0 is too far");
+    refused("999999999m,0\n", "c.csv:1: '999999999m,0' is no waypoint");
+    refused("0000000000001m,0\n", "c.csv:1: '0000000000001m,0' is no waypoint");
+}
+
 // As editors of Windows begin a text.
 void test_a_mark_of_utf8_is_none_of_the_course(void) {
     const char text[] = "\xEF\xBB\xBF"
