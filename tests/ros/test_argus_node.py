@@ -12,7 +12,9 @@ from typing import Any
 
 import harness
 import pytest
+from argus_ros import argus_node
 from argus_ros.argus_node import ArgusNode
+from argus_ros.repair import Verdict
 from argus_tools.control import Client
 from diagnostic_msgs.msg import DiagnosticArray
 from harness import Argusd
@@ -141,6 +143,17 @@ def test_every_sonar_of_a_ring_of_more_than_sixteen_has_its_topics(
     static = next(message for topic, message in bot.bench.heard if topic == "/tf_static")
     assert len(static.transforms) == sonars
     assert bot.call(Trigger, f"sonar/retest_{sonars - 1}").success
+
+
+def test_a_state_may_list_fewer_sonars_than_the_ring_has() -> None:
+    """Before it knows the robot argusd lists sixteen."""
+    ring = argus_node._Ring(robot_table("peoplebot-sh"))
+    ring.take_state({"health": ["HEALTHY"] * 16, "kind": ["none"] * 16})
+    ring.take_readings({"t": 1.0, "mm": [700] * 16, "age_ms": [20] * 16})
+    assert ring.verdicts == [Verdict("HEALTHY", "none")] * 16 + [Verdict()] * 16
+    assert (ring.reading_mm, ring.age_ms) == ([700] * 16 + [-1] * 16, [20] * 16 + [-1] * 16)
+    ring.take_readings({"t": 1.0, "mm": [700] * 40, "age_ms": [20] * 40})
+    assert len(ring.reading_mm) == len(ring.age_ms) == 32
 
 
 def test_topics_tell_what_argusd_knows(robot: Any) -> None:

@@ -7,7 +7,7 @@ import math
 import time
 from contextlib import ExitStack
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, TypeVar
 
 from argus_tools.control import Client, ControlError
 from argus_tools.control import Refused as OrderRefused
@@ -38,6 +38,9 @@ SONARS: Final = 16
 _COVER_AGE_S: Final = 1.0
 
 
+_T = TypeVar("_T")
+
+
 class _Ring:
     """What was last said of each sonar."""
 
@@ -50,6 +53,18 @@ class _Ring:
         self.reading_mm = [-1] * table.sonars
         self.age_ms = [-1] * table.sonars
         self.told_s = [-math.inf] * table.sonars
+
+    def take_state(self, state: dict[str, Any]) -> None:
+        """Take the verdicts of a state. Before the robot is known it may list fewer sonars than the ring has."""
+        told = [Verdict(*pair) for pair in zip(state["health"], state["kind"], strict=True)]
+        self.verdicts = self._all(told, Verdict())
+
+    def take_readings(self, readings: dict[str, Any]) -> None:
+        """Take readings, likewise; ages of -1 are of sonars that have not reported."""
+        self.reading_mm, self.age_ms = self._all(readings["mm"], -1), self._all(readings["age_ms"], -1)
+
+    def _all(self, told: list[_T], missing: _T) -> list[_T]:
+        return (told + [missing] * self.table.sonars)[: self.table.sonars]
 
     def covering(self, number: int, policy: Policy) -> list[float]:
         """Return the readings that stand in for a sonar."""
@@ -268,7 +283,7 @@ class ArgusNode(ArgusLifecycleNode):
         if self._ring is None or self._ring.table != table:
             self._meet(table)
         assert self._ring is not None
-        self._ring.verdicts = [Verdict(*pair) for pair in zip(state["health"], state["kind"], strict=True)]
+        self._ring.take_state(state)
         if self._ring.verdicts != self._told:
             self._diagnose()
         if self._active and state.get("online") and self._has_time():
@@ -311,7 +326,7 @@ class ArgusNode(ArgusLifecycleNode):
         ring = self._ring
         if ring is None:
             return
-        ring.reading_mm, ring.age_ms = readings["mm"], readings["age_ms"]
+        ring.take_readings(readings)
         self._readings_s = time.monotonic()
         if not self._active or not self._has_time():
             return
