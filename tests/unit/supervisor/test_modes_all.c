@@ -300,8 +300,9 @@ static void enumerate(const uint8_t depth) {
     }
     printf("depth %d, %d inputs: %d states, modes", depth, (int)INPUTS, states);
     for (int mode = 0; mode <= ARGUS_MODE_CREEPING; mode++) {
-        printf("%s", seen[mode] ? " " : "");
-        printf(seen[mode] ? "%d" : "", mode);
+        if (seen[mode]) {
+            printf(" %d", mode);
+        }
     }
     printf("; wait for a person:");
     for (int wait = 0; wait <= ARGUS_WAIT_ECHO; wait++) {
