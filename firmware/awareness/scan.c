@@ -68,15 +68,13 @@ argus_shape_t argus_scan_shape(const argus_knowledge_t *const knowledge, const i
     return shape;
 }
 
-// Where a return is, from a transducer: how far, mm, 0: behind; and within its cone by how much.
+// How far a return is from a transducer, mm, and how far off its axis; half a turn: behind it.
 static int32_t seen_mm(const argus_knowledge_t *const knowledge, const int sonar, const int sector,
                        const int32_t aside_cdeg, int32_t *const off_cdeg) {
     const argus_sonar_pose_t eye = argus_robot_pose(knowledge->robot, sector);
-    const argus_sonar_pose_t from = argus_robot_pose(knowledge->robot, sonar);
     const argus_pose_t axis = {eye.x_mm, eye.y_mm, eye.heading_deg * 100 + aside_cdeg};
     const argus_point_t at = argus_to_course(&axis, (argus_point_t){knowledge->sonar[sector].reading_mm, 0});
-    const argus_point_t seen =
-        argus_in_frame((argus_point_t){at.x_mm - from.x_mm, at.y_mm - from.y_mm}, from.heading_deg * 100);
+    const argus_point_t seen = argus_from_sonar(knowledge, sonar, at);
     *off_cdeg = seen.x_mm > 0 ? (int32_t)((int64_t)argus_abs(seen.y_mm) * ARGUS_RADIAN_CDEG / seen.x_mm)
                               : ARGUS_HALF_TURN_CDEG;
     return argus_hypot(seen.x_mm, seen.y_mm);

@@ -124,9 +124,7 @@ static argus_point_t place_of(const argus_echo_t *const seen, const argus_knowle
 // proof: a smooth wall sends no echo back.
 static bool hears_past(const argus_knowledge_t *const knowledge, const int sonar, const argus_point_t at) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    const argus_sonar_pose_t pose = argus_robot_pose(knowledge->robot, sonar);
-    const argus_point_t off = {at.x_mm - pose.x_mm, at.y_mm - pose.y_mm};
-    const argus_point_t seen = argus_in_frame(off, pose.heading_deg * 100);
+    const argus_point_t seen = argus_from_sonar(knowledge, sonar, at);
     return seen.x_mm > 0 && argus_abs(seen.y_mm) <= seen.x_mm * CONE_SLOPE / 128 &&
            knowledge->sonar[sonar].reading_mm > seen.x_mm + PAST_MM;
 }

@@ -476,6 +476,12 @@ argus_point_t argus_echo_robot(const argus_knowledge_t *const self, const int so
     return argus_to_course(&mount, (argus_point_t){range, 0});
 }
 
+argus_point_t argus_from_sonar(const argus_knowledge_t *const self, const int sonar, const argus_point_t at) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < self->sonars);
+    const argus_sonar_pose_t from = argus_robot_pose(self->robot, sonar);
+    return argus_in_frame((argus_point_t){at.x_mm - from.x_mm, at.y_mm - from.y_mm}, from.heading_deg * 100);
+}
+
 argus_frame_t argus_frame_at(const argus_pose_t *const pose) {
     return (argus_frame_t){
         {pose->x_mm, pose->y_mm}, argus_cos(pose->heading_cdeg), argus_sin(pose->heading_cdeg)};

@@ -164,6 +164,9 @@ bool argus_at_rest(const argus_knowledge_t *self); // two consecutive SIPs withi
 argus_point_t argus_echo_robot(const argus_knowledge_t *self, int sonar);
 argus_point_t argus_to_course(const argus_pose_t *pose, argus_point_t robot);
 
+// A place, robot frame, as a transducer has it: ahead along its axis, and to the left.
+argus_point_t argus_from_sonar(const argus_knowledge_t *self, int sonar, argus_point_t at);
+
 // The same of many points: the direction of the pose is worked out once.
 typedef struct {
     argus_point_t at;

@@ -41,21 +41,10 @@ static int64_t angle_units(const double degrees, const int64_t turn) {
     return (units < 0 ? units + turn : units) - turn / 2;
 }
 
-static bool wants_motion(const parts_t *const parts) {
-    const drive_t *const drive = parts->drive;
-    const double ahead = drive->move_mode ? drive->move_left : drive->v_set;
-    const double rotation = drive->head_mode ? drive->head_left : drive->w_set;
-    return drive->motors && !argus_sim_watchdog_expired(parts) && (ahead != 0 || rotation != 0);
-}
-
 static void put_stalls(const parts_t *const parts, writer_t *const to) {
     stall_t *const stall = parts->stall;
-    const robot_t *const robot = parts->robot;
-    const int32_t rear = robot->rear_segments ? parts->chassis->contact_rear & parts->bumper_mask : 0;
-    const int32_t pressed = parts->chassis->contact_front | robot->fault_bumpers;
-    const int32_t front = robot->bumpers ? pressed & parts->bumper_mask : 0;
-    put8(to, rear | (stall->seen_left || stall->left));
-    put8(to, front | (stall->seen_right || stall->right));
+    put8(to, argus_sim_rear_pressed(parts) | (stall->seen_left || stall->left));
+    put8(to, argus_sim_front_pressed(parts) | (stall->seen_right || stall->right));
     stall->seen_left = stall->seen_right = false;
 }
 
@@ -92,11 +81,10 @@ uint32_t argus_sim_checksum(const uint8_t *const data, const int32_t length) {
 int32_t argus_sim_sip(const parts_t *const parts, const report_t *const report, uint8_t *const packet) {
     const drive_t *const drive = parts->drive;
     const chassis_t *const chassis = parts->chassis;
-    const double half = drive->w * (3.14159265358979323846 / 180) * parts->track_mm / 2;
-    const double left = (drive->v - half) * drive->left_part, right = (drive->v + half) * drive->right_part;
-    const int64_t left_mm_s = rounded(left), right_mm_s = rounded(right);
-    const bool moves = left_mm_s != 0 || right_mm_s != 0 || wants_motion(parts);
-    const int64_t battery_dv = rounded(battery_v(parts, report, fabs(left) + fabs(right)) * 10);
+    const wheels_t wheels = argus_sim_wheels(parts);
+    const int64_t left_mm_s = rounded(wheels.left), right_mm_s = rounded(wheels.right);
+    const bool moves = left_mm_s != 0 || right_mm_s != 0 || argus_sim_wants_motion(parts);
+    const int64_t battery_dv = rounded(battery_v(parts, report, fabs(wheels.left) + fabs(wheels.right)) * 10);
     writer_t to = {packet + 3};
     put8(&to, moves ? report->moving : report->still);
     put16(&to, rounded(chassis->odo_x / report->unit_mm) & 0xFFFF);

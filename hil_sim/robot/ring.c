@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <stdlib.h>
 
-static const double sound_mm_ms = 343.0, step_ms = 10.0;
+static const double sound_mm_ms = 343.0, step_ms = STEP_MS;
 
 typedef struct {
     double x, y, th;
@@ -72,7 +72,7 @@ static pose_t pose_at(const chassis_t *const chassis, const double back_ms) {
 static int32_t true_range(const parts_t *const parts, const int32_t number, const pose_t at) {
     int32_t range = argus_sim_echo_ping(parts->echo, number, at.x, at.y, at.th, 0.0, 0.0, NULL);
     if (range == UNKNOWN_CELL) {
-        const double heading = at.th * (3.14159265358979323846 / 180);
+        const double heading = at.th * DEGREE;
         const double *const mount = &parts->mount[3 * number];
         const double c = cos(heading), s = sin(heading);
         parts->learn(at.x + mount[0] * c - mount[1] * s, at.y + mount[0] * s + mount[1] * c);

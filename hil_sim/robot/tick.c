@@ -10,10 +10,7 @@
 #include <math.h>
 #include <stddef.h>
 
-enum { STEP_MS = 10 };
-
-static const double step_s = 10.0 / 1000;
-static const double deg = 3.14159265358979323846 / 180;
+static const double step_s = (double)STEP_MS / 1000;
 
 // Which of two Python's min and max return where they are equal decides over the sign of a zero.
 static double least(const double a, const double b) {
@@ -93,9 +90,9 @@ static step_t as_wheels_turn(const parts_t *const parts, const double ds, const 
     if (left == right && right == 1.0) {
         return (step_t){ds, dth, moved, turned};
     }
-    const double half = dth * deg * parts->track_mm / 2;
+    const double half = dth * DEGREE * parts->track_mm / 2;
     const double made_left = (ds - half) * left, made_right = (ds + half) * right;
-    return (step_t){(made_left + made_right) / 2, (made_right - made_left) / parts->track_mm / deg, moved,
+    return (step_t){(made_left + made_right) / 2, (made_right - made_left) / parts->track_mm / DEGREE, moved,
                     turned};
 }
 
@@ -142,22 +139,32 @@ static void done(drive_t *const drive, const step_t *const step) {
 
 // ---- stalls -----------------------------------------------------------------------------------------------
 
-bool argus_sim_watchdog_expired(const parts_t *const parts) {
+static bool watchdog_expired(const parts_t *const parts) {
     const robot_t *const robot = parts->robot;
     return robot->connected && robot->watchdog_stops &&
            robot->now_ms - robot->last_heard_ms > parts->watchdog_ms;
 }
 
+bool argus_sim_wants_motion(const parts_t *const parts) {
+    return parts->drive->motors && !watchdog_expired(parts) && has_set_point(parts->drive);
+}
+
+int32_t argus_sim_front_pressed(const parts_t *const parts) {
+    const int32_t pressed = parts->chassis->contact_front | parts->robot->fault_bumpers;
+    return parts->robot->bumpers ? pressed & parts->bumper_mask : 0;
+}
+
+int32_t argus_sim_rear_pressed(const parts_t *const parts) {
+    return parts->robot->rear_segments ? parts->chassis->contact_rear & parts->bumper_mask : 0;
+}
+
 static bool bumper_stalls(const parts_t *const parts) {
-    const robot_t *const robot = parts->robot;
     const int32_t stalls = parts->settings->bumpstall;
     const double way = ahead(parts->drive);
     if (way > 0) {
-        const int32_t pressed = parts->chassis->contact_front | robot->fault_bumpers;
-        return robot->bumpers && (pressed & parts->bumper_mask) && (stalls & parts->stalls_front);
+        return argus_sim_front_pressed(parts) && (stalls & parts->stalls_front);
     }
-    return way < 0 && robot->rear_segments && (parts->chassis->contact_rear & parts->bumper_mask) &&
-           (stalls & parts->stalls_rear);
+    return way < 0 && argus_sim_rear_pressed(parts) && (stalls & parts->stalls_rear);
 }
 
 static bool is_relaxed(const parts_t *const parts) {
@@ -182,30 +189,35 @@ static bool displace(const parts_t *const parts, const step_t *const step) {
     const double ds = step->ds, dth = step->dth;
     const double true_ds = ds * chassis->true_distance;
     const double true_dth = dth * chassis->true_turn + ds * chassis->drift_deg_mm;
-    chassis->free_mm -= fabs(true_ds) + fabs(true_dth) * deg * parts->swing_mm;
+    chassis->free_mm -= fabs(true_ds) + fabs(true_dth) * DEGREE * parts->swing_mm;
     if (chassis->free_mm <= 0) {
         return false;
     }
-    const double middle = (chassis->th + true_dth / 2) * deg;
+    const double middle = (chassis->th + true_dth / 2) * DEGREE;
     chassis->x += true_ds * cos(middle);
     chassis->y += true_ds * sin(middle);
     chassis->th += true_dth;
-    const double seen = (chassis->odo_th + dth / 2) * deg;
+    const double seen = (chassis->odo_th + dth / 2) * DEGREE;
     chassis->odo_x += ds * cos(seen);
     chassis->odo_y += ds * sin(seen);
     chassis->odo_th += dth;
-    const double half = dth * deg * parts->track_mm / 2;
+    const double half = dth * DEGREE * parts->track_mm / 2;
     chassis->left_mm += ds - half;
     chassis->right_mm += ds + half;
     chassis->travelled_mm += fabs(true_ds);
     return true;
 }
 
+wheels_t argus_sim_wheels(const parts_t *const parts) {
+    const drive_t *const drive = parts->drive;
+    const double half = drive->w * DEGREE * parts->track_mm / 2;
+    return (wheels_t){(drive->v - half) * drive->left_part, (drive->v + half) * drive->right_part};
+}
+
 static void draw_energy(const parts_t *const parts, const double v_old, const double w_old) {
     const drive_t *const drive = parts->drive;
-    const double half = drive->w * deg * parts->track_mm / 2;
-    const double left = (drive->v - half) * drive->left_part, right = (drive->v + half) * drive->right_part;
-    const double wheels_mm = (fabs(left) + fabs(right)) * step_s;
+    const wheels_t wheels = argus_sim_wheels(parts);
+    const double wheels_mm = (fabs(wheels.left) + fabs(wheels.right)) * step_s;
     parts->energy->wheel_m += wheels_mm / 1000;
     const double turning = parts->inertia * (drive->w * drive->w - w_old * w_old) * parts->rad2 / 2;
     const double gained = parts->mass_kg * (drive->v * drive->v - v_old * v_old) / 2e6 + turning;
@@ -214,14 +226,14 @@ static void draw_energy(const parts_t *const parts, const double v_old, const do
     }
 }
 
-static bool go(const parts_t *const parts, const bool expired) {
+static bool go(const parts_t *const parts) {
     drive_t *const drive = parts->drive;
     const settings_t *const settings = parts->settings;
     const double v_old = drive->v, w_old = drive->w;
     const bool coasts = !drive->motors || is_relaxed(parts);
-    const step_t step = coasts    ? brake(parts, parts->accel_top, parts->rotaccel_top)
-                        : expired ? brake(parts, settings->decel, settings->rdecel)
-                                  : follow(parts);
+    const step_t step = coasts                    ? brake(parts, parts->accel_top, parts->rotaccel_top)
+                        : watchdog_expired(parts) ? brake(parts, settings->decel, settings->rdecel)
+                                                  : follow(parts);
     if (step.ds != 0 || step.dth != 0) {
         if (!displace(parts, &step)) {
             return false;
@@ -235,9 +247,8 @@ static bool go(const parts_t *const parts, const bool expired) {
 
 static bool move(const parts_t *const parts) {
     const drive_t *const drive = parts->drive;
-    const bool expired = argus_sim_watchdog_expired(parts);
-    if (drive->v != 0 || drive->w != 0 || (drive->motors && !expired && has_set_point(drive))) {
-        return go(parts, expired);
+    if (drive->v != 0 || drive->w != 0 || argus_sim_wants_motion(parts)) {
+        return go(parts);
     }
     if (parts->stall->left || parts->stall->right) {
         parts->stall->left = parts->stall->right = false;

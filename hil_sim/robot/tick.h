@@ -8,7 +8,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum { HISTORY = 64, ARRAYS = 4, ORDER = 16, KEPT = 128 };
+enum { STEP_MS = 10, HISTORY = 64, ARRAYS = 4, ORDER = 16, KEPT = 128 };
+
+#define DEGREE (3.14159265358979323846 / 180)
 
 typedef struct {
     double v_max, rv_max, accel, decel, raccel, rdecel;
@@ -112,6 +114,18 @@ typedef struct {
 // Lets sub-steps pass until `stop_ms`, none beyond `limit_ms`; false: the next one is for Python.
 bool argus_sim_run(const parts_t *parts, double stop_ms, double limit_ms);
 
-bool argus_sim_watchdog_expired(const parts_t *parts);
+// The drive is on, heard of its client of late, and has somewhere to go.
+bool argus_sim_wants_motion(const parts_t *parts);
+
+// Segments of the bumpers that are pressed, as the robot reports them.
+int32_t argus_sim_front_pressed(const parts_t *parts);
+int32_t argus_sim_rear_pressed(const parts_t *parts);
+
+// How fast the wheels turn, mm/s.
+typedef struct {
+    double left, right;
+} wheels_t;
+
+wheels_t argus_sim_wheels(const parts_t *parts);
 
 #endif

@@ -178,7 +178,7 @@ static void look_at_robot(sil_t *const sil) {
 
 static void advance(sil_t *const sil) {
     robot_t *const robot = sil->parts->robot;
-    while ((double)(robot->now_ms + 10) <= sil->now_ms) {
+    while ((double)(robot->now_ms + STEP_MS) <= sil->now_ms) {
         if (!argus_sim_run(sil->parts, sil->next_sip_ms, sil->now_ms)) {
             sil->calls.step();
         }

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import argparse
 import os
 import shlex
 import shutil
@@ -25,6 +26,9 @@ EXIT_SIGNAL: Final = 128
 
 Command = Sequence[str | Path]
 Run = Callable[[Command], None]
+Action = Callable[[argparse.Namespace], int]
+Add = Callable[[str, Action, str, str], argparse.ArgumentParser]
+"""Adds a command: its name, what it does, what it is for, examples."""
 
 
 class Stop(Exception):

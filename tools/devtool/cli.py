@@ -5,11 +5,11 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Final
 
 from devtool import commands, docs, firmware, mutation, packaging, proofs
-from devtool.base import Stop, leave_at_sigterm
+from devtool.base import Action, Add, Stop, leave_at_sigterm
 from devtool.cmake import presets
 from devtool.coverage import do_coverage
 from devtool.linting import LINT_STAGES, format_stages
@@ -25,9 +25,6 @@ EXIT_CODES: Final = """exit codes: 0 done, 1 something failed, 2 wrong arguments
             3 the machine lacks something (the message gives the command that adds it)"""
 HANDED_ON: Final = ("demo", "shell")
 """What follows these is not ours, except a leading --help."""
-
-Action = Callable[[argparse.Namespace], int]
-Add = Callable[[str, Action, str, str], argparse.ArgumentParser]
 
 
 def do_test(args: argparse.Namespace) -> int:

@@ -6,10 +6,23 @@ from __future__ import annotations
 import argparse
 import hashlib
 import subprocess
-from collections.abc import Callable
 from typing import Final
 
-from devtool.base import BUILD, EXIT_SETUP, LOGS, ROOT, VENV, Command, Run, Stop, quiet_ok, say, shown, words
+from devtool.base import (
+    BUILD,
+    EXIT_SETUP,
+    LOGS,
+    ROOT,
+    VENV,
+    Add,
+    Command,
+    Run,
+    Stop,
+    quiet_ok,
+    say,
+    shown,
+    words,
+)
 from devtool.browser import lacking as browser_lacking
 from devtool.commands import quietly
 from devtool.setup import alone, ensure
@@ -71,9 +84,6 @@ def do_docs(_args: argparse.Namespace) -> int:
     quietly("building the site", make_site)
     say(f"the documents: {shown(SITE / 'index.html')}")
     return 0
-
-
-Add = Callable[[str, Callable[[argparse.Namespace], int], str, str], argparse.ArgumentParser]
 
 
 def add_commands(add: Add) -> None:

@@ -19,6 +19,7 @@ from devtool.base import (
     EXIT_USAGE,
     ROOT,
     VENV,
+    Add,
     Command,
     Run,
     Stop,
@@ -166,9 +167,6 @@ def add_config(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--config", type=Path, metavar="FILE", help="settings to compile in, an INI file as argusd's"
     )
-
-
-Add = Callable[[str, Callable[[argparse.Namespace], int], str, str], argparse.ArgumentParser]
 
 
 def add_commands(add: Add) -> None:

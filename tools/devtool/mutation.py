@@ -11,11 +11,11 @@ import random
 import re
 import shlex
 import subprocess
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Final
 
-from devtool.base import BUILD, CORES, EXIT_SETUP, EXIT_USAGE, ROOT, Stop, say, shown
+from devtool.base import BUILD, CORES, EXIT_SETUP, EXIT_USAGE, ROOT, Add, Stop, say, shown
 
 DEBUG: Final = BUILD / "debug"
 WORK: Final = BUILD / "mutation"
@@ -52,8 +52,6 @@ LEFT_OUT: Final = re.compile(
 STATEMENT: Final = re.compile(
     r"^(\s+)(?!return|const|static|break|continue|int|uint|bool|argus_\w+_t\b)\S.*;$"
 )
-
-Add = Callable[[str, Callable[[argparse.Namespace], int], str, str], argparse.ArgumentParser]
 
 
 @dataclasses.dataclass(frozen=True)

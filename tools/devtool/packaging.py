@@ -13,11 +13,11 @@ import platform
 import shutil
 import subprocess
 import zipfile
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Final
 
-from devtool.base import BUILD, CORES, EXIT_USAGE, ROOT, VENV, Run, Stop, say, shown
+from devtool.base import BUILD, CORES, EXIT_USAGE, ROOT, VENV, Add, Run, Stop, say, shown
 from devtool.commands import quietly
 from devtool.setup import HEADER, alone, ensure
 from devtool.stages import StageFailed, making
@@ -241,9 +241,6 @@ def package_tests(run: Run) -> str | None:
     run([VENV / "bin/python", "-m", "pytest", "-q", "tests/packages"])
     chroot = os.environ.get("ARGUS_CHROOT")
     return None if chroot else "not installed in a clean Debian: ARGUS_CHROOT= names none"
-
-
-Add = Callable[[str, Callable[[argparse.Namespace], int], str, str], argparse.ArgumentParser]
 
 
 def add_commands(add: Add) -> None:

@@ -11,11 +11,24 @@ import shutil
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Final
 
-from devtool.base import BUILD, CORES, EXIT_FAILED, EXIT_SETUP, EXIT_USAGE, ROOT, Run, Stop, paint, say, shown
+from devtool.base import (
+    BUILD,
+    CORES,
+    EXIT_FAILED,
+    EXIT_SETUP,
+    EXIT_USAGE,
+    ROOT,
+    Add,
+    Run,
+    Stop,
+    paint,
+    say,
+    shown,
+)
 from devtool.stages import StageFailed, making
 from devtool.system import apt_install
 
@@ -37,8 +50,6 @@ DEFINES: Final = (
     "-DARGUS_SONARS=16",
     '-DARGUS_ASSERT(condition)=__CPROVER_assert((condition),"ARGUS_ASSERT")',
 )
-
-Add = Callable[[str, Callable[[argparse.Namespace], int], str, str], argparse.ArgumentParser]
 
 
 @dataclasses.dataclass(frozen=True)

@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const char blanks[] = " \t\r\n"; // around a number
+
 text_t text_in(char *buffer, size_t capacity) {
     buffer[0] = '\0';
     return (text_t){.at = buffer, .capacity = capacity};
@@ -46,7 +48,7 @@ bool text_number(const char *text, int32_t *value) {
     if (end == text || errno != 0 || number < INT32_MIN || number > INT32_MAX) {
         return false;
     }
-    if (end[strspn(end, " \t\r\n")] != '\0') {
+    if (end[strspn(end, blanks)] != '\0') {
         return false;
     }
     *value = (int32_t)number;
@@ -93,7 +95,6 @@ static bool read_millionths(const char *text, int64_t *millionths) {
 
 // The text without blanks around it.
 static const char *bare(const char *text, size_t *length) {
-    static const char blanks[] = " \t\r\n";
     text += strspn(text, blanks);
     *length = strlen(text);
     while (*length > 0 && strchr(blanks, text[*length - 1]) != NULL) {

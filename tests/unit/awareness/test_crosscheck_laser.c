@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "scene.h"
+#include "sectors.h"
 #include "unity.h"
 
 #define ME 0
@@ -29,20 +30,9 @@ static argus_evidence_t e;
 // laser.
 static void begin(int wall_mm) {
     scene_blank(&k, &e);
-    memset(&own, 0, sizeof own);
-    argus_robot_t *const row = &own.rows[0];
-    row->poses = (int16_t)((const char *)own.poses - (const char *)row);
-    row->sonars = FIRST + SECTORS;
-    row->sector_deg = WIDTH_DEG;
-    row->cone_deg = 30;
+    sectors_begin(&own, &k, FIRST, SECTORS, WIDTH_DEG);
     own.poses[ME] = (argus_sonar_pose_t){AHEAD_MM, 0, 0};
-    for (int i = FIRST; i < FIRST + SECTORS; i++) {
-        own.poses[i] = (argus_sonar_pose_t){0, 0, (int16_t)((MIDDLE - i) * WIDTH_DEG)};
-        row->sector_mask = (argus_mask_t)(row->sector_mask | 1u << i);
-    }
-    k.robot = row;
-    k.sonars = row->sonars;
-    k.fresh = (argus_mask_t)((1u << row->sonars) - 1u);
+    k.fresh = (argus_mask_t)((1u << k.sonars) - 1u);
     for (int i = FIRST; i < FIRST + SECTORS; i++) {
         const int off = i > MIDDLE ? i - MIDDLE : MIDDLE - i;
         k.sonar[i].reading_mm = (uint16_t)(wall_mm + wall_mm * off * off * 3 / 100);

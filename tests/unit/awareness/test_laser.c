@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "robot/table.h"
+#include "sectors.h"
 #include "unity.h"
 
 #define SECTORS 15
@@ -32,17 +33,7 @@ void setUp(void) {
         TEST_IGNORE_MESSAGE("this build takes no laser");
     }
     memset(&k, 0, sizeof k);
-    memset(&own, 0, sizeof own);
-    argus_robot_t *const row = &own.rows[0];
-    row->poses = (int16_t)((const char *)own.poses - (const char *)row);
-    row->sonars = SECTORS;
-    row->sector_deg = WIDTH_DEG;
-    for (int i = 0; i < SECTORS && i < ARGUS_SONARS; i++) {
-        own.poses[i].heading_deg = (int16_t)((SECTORS / 2 - i) * WIDTH_DEG);
-        row->sector_mask = (argus_mask_t)(row->sector_mask | 1u << i);
-    }
-    k.robot = row;
-    k.sonars = SECTORS;
+    sectors_begin(&own, &k, 0, SECTORS, WIDTH_DEG);
     k.fresh = (argus_mask_t)((1u << SECTORS) - 1);
     k.sip_ms = 1000;
     memset(&laser, 0, sizeof laser);

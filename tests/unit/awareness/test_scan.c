@@ -11,6 +11,7 @@
 #include "awareness/numbers.h"
 #include "knowledge/angle.h"
 #include "robot/table.h"
+#include "sectors.h"
 #include "unity.h"
 
 #define SECTORS 15
@@ -27,18 +28,7 @@ void setUp(void) {
         TEST_IGNORE_MESSAGE("this build takes no laser");
     }
     memset(&k, 0, sizeof k);
-    memset(&own, 0, sizeof own);
-    argus_robot_t *const row = &own.rows[0];
-    row->poses = (int16_t)((const char *)own.poses - (const char *)row);
-    row->sonars = FIRST + SECTORS;
-    row->sector_deg = WIDTH_DEG;
-    row->cone_deg = 30;
-    for (int i = FIRST; i < FIRST + SECTORS && i < ARGUS_SONARS; i++) {
-        own.poses[i].heading_deg = (int16_t)((FIRST + SECTORS / 2 - i) * WIDTH_DEG);
-        row->sector_mask = (argus_mask_t)(row->sector_mask | 1u << i);
-    }
-    k.robot = row;
-    k.sonars = FIRST + SECTORS;
+    sectors_begin(&own, &k, FIRST, SECTORS, WIDTH_DEG);
     k.fresh = ~(argus_mask_t)0;
 }
 
