@@ -97,3 +97,10 @@ def test_a_clang_too_old_is_none(monkeypatch: pytest.MonkeyPatch, tmp_path: Path
     assert coverage.modern_clang() is None
     assert "apt install" in coverage.mcdc_stage(lambda _command: pytest.fail("nothing is to be run"))
     coverage.modern_clang.cache_clear()
+
+
+def test_sources_have_the_names_of_the_tree_by_llvm_too() -> None:
+    """It puts the folder of the build before them."""
+    summary = {measure: {"covered": 3, "count": 4} for measure in ("lines", "branches", "mcdc")}
+    told = coverage.file_of_llvm({"filename": "build/mcdc/firmware/arcos/sip.c", "summary": summary})
+    assert told == File("firmware/arcos/sip.c", Reached(3, 4), Reached(3, 4), Reached(3, 4))

@@ -29,6 +29,9 @@ PROGRAMS_OF: Final = (("argus.dir",), ("argus.dir", "argus_hal.dir", "argusd_par
 """The counted objects of firmware/ alone, and with hal/: other programs compile the same sources a second time."""
 CLANGS: Final = (*(f"clang-{number}" for number in range(25, 17, -1)), "clang")
 OLDEST_CLANG: Final = 18
+MEASURES: Final = ("lines", "branches", "mcdc")
+BUILT_IN: Final = "build/mcdc/"
+"""What llvm-cov puts before the names of sources, which the build makes relative to the tree."""
 NO_CLANG: Final = (
     f"no clang {OLDEST_CLANG} or later here: MC/DC is not measured (Debian 12: apt install clang-19)"
 )
@@ -80,10 +83,7 @@ def file_of_gcovr(one: Mapping[str, Any]) -> File:
 def file_of_llvm(one: Mapping[str, Any]) -> File:
     """Return what llvm-cov's export tells of a file."""
     parts = [Reached(one["summary"][part]["covered"], one["summary"][part]["count"]) for part in MEASURES]
-    return File(str(Path(one["filename"].lstrip("/"))), *parts)
-
-
-MEASURES: Final = ("lines", "branches", "mcdc")
+    return File(one["filename"].removeprefix(BUILT_IN), *parts)
 
 
 def total_of(files: Iterable[File]) -> File:
@@ -132,8 +132,10 @@ def judge(files: Sequence[File]) -> str:
     if lacking:
         raise StageFailed("; ".join([*lacking, "see tools/dev coverage"]))
     total = total_of(files)
-    parts = [f"{measure} {getattr(total, measure).percent:.2f} %" for measure in MEASURES]
-    return f"firmware/: {', '.join(parts if total.mcdc.total else parts[:2])}"
+    reached = {measure: getattr(total, measure) for measure in MEASURES}
+    return (
+        f"firmware/: {', '.join(f'{name} {one.percent:.2f} %' for name, one in reached.items() if one.total)}"
+    )
 
 
 def forget(preset: str) -> None:
@@ -259,6 +261,8 @@ def do_coverage(args: argparse.Namespace) -> int:
         )
 
     quietly("building and running the C unit tests", measure)
+    if not files:
+        raise Stop("nothing was measured: see build/logs/last.log")
     print("\n".join(table(files)))
     if not found:
         say(
