@@ -43,10 +43,9 @@ static void give_back(const argus_grant_t *const grant, argus_port_t *const self
 }
 
 static void close_session(const argus_grant_t *const grant, argus_port_t *const self) {
-    if (self->phase == ARGUS_PORT_OPEN) {
-        argus_emit(grant->events, ARGUS_EV_GUARD_CLOSED, (int32_t)(self->packets & 0x7FFFFFFFu));
-        give_back(grant, self);
-    }
+    ARGUS_ASSERT(self->phase == ARGUS_PORT_OPEN);
+    argus_emit(grant->events, ARGUS_EV_GUARD_CLOSED, (int32_t)(self->packets & 0x7FFFFFFFu));
+    give_back(grant, self);
     self->phase = ARGUS_PORT_WAIT;
 }
 
@@ -57,17 +56,16 @@ static void lose(const argus_grant_t *const grant, argus_port_t *const self, con
         give_back(grant, self);
     }
     self->phase = ARGUS_PORT_WAIT;
-    if (why != PARTED_SILENT) {
-        argus_parser_flush(&self->from_client);
-        self->out_length = 0;
-    }
+    argus_parser_flush(&self->from_client);
+    self->out_length = 0;
 }
 
 // As at the end of a robot's own session, the motors go off; not if the manager drives by now.
 static void part(const argus_grant_t *const grant, argus_port_t *const self) {
     const bool due =
         argus_at_rest(&grant->core->knowledge) || grant->core->now_ms - self->parted_ms >= PART_MS;
-    if (!grant->core->orders.passive || self->drives) {
+    ARGUS_ASSERT(!self->drives); // whoever drives parts no more
+    if (!grant->core->orders.passive) {
         self->parting = false;
     } else if (due) {
         self->parting = !argus_outbox_int(grant->out, ARCOS_CMD_ENABLE, 0);
@@ -311,10 +309,9 @@ static void take_rest(const argus_grant_t *const grant, argus_port_t *const self
     case ARGUS_TOPIC_STREAM:
         self->streams |= pass(grant, self, said) ? argus_send_stream(said->command, said->argument) : 0;
         break;
-    case ARGUS_TOPIC_PASSED:
-        pass(grant, self, said);
-        break;
     default:
+        ARGUS_ASSERT(said->topic == ARGUS_TOPIC_PASSED);
+        pass(grant, self, said);
         break;
     }
 }

@@ -137,18 +137,21 @@ static bool is_held(const witnesses_t *const of) {
     return of->fits == 0 && of->plain > 0 && (looks_both_ways(of) || of->ahead >= 2 || of->back >= 2);
 }
 
-static bool slip(argus_slip_t *const self, const argus_pose_t *const to) {
+static void slip(argus_slip_t *const self, const argus_pose_t *const to) {
     self->slipped_mm = argus_hypot(to->x_mm - self->first.x_mm, to->y_mm - self->first.y_mm);
     self->begun = false;
     self->proof = 0;
     self->doubted = FITS_WANTED;
     self->slips++;
-    return true;
 }
 
 static bool prove(argus_slip_t *const self, const argus_pose_t *const to, const int worth) {
     self->proof = (uint8_t)(self->proof + worth);
-    return self->proof >= PROOF && slip(self, to);
+    const bool proven = self->proof >= PROOF;
+    if (proven) {
+        slip(self, to);
+    }
+    return proven;
 }
 
 // Where nothing tells, what was proved before stands.
@@ -247,5 +250,6 @@ bool argus_slip_denies(argus_slip_t *const self, const argus_knowledge_t *const 
     if (self->doubted == 0 && self->proof < PROOF / 2) {
         return false;
     }
-    return slip(self, &knowledge->pose);
+    slip(self, &knowledge->pose);
+    return true;
 }

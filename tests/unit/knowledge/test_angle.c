@@ -113,3 +113,26 @@ void test_length_of_a_vector(void) {
         }
     }
 }
+
+static uint32_t digest(uint32_t hash, int32_t value) {
+    for (int i = 0; i < 4; i++) {
+        hash = (hash ^ ((uint32_t)value >> 8 * i & 0xFFu)) * 16777619u;
+    }
+    return hash;
+}
+
+// Records of a mission are replayed elsewhere: each value is the same everywhere, to the last bit.
+void test_each_value_is_what_it_was(void) {
+    uint32_t sines = 2166136261u;
+    uint32_t directions = 2166136261u;
+    for (int32_t cdeg = 0; cdeg <= 9000; cdeg++) {
+        sines = digest(sines, argus_sin(cdeg));
+    }
+    for (int32_t x = -3000; x <= 3000; x += 31) {
+        for (int32_t y = -3000; y <= 3000; y += 29) {
+            directions = digest(directions, argus_atan2(y, x));
+        }
+    }
+    TEST_ASSERT_EQUAL_HEX32(0xE6372921u, sines);
+    TEST_ASSERT_EQUAL_HEX32(0xF76D1024u, directions);
+}

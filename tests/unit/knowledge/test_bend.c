@@ -123,3 +123,26 @@ void test_what_tells_nothing(void) {
     }
     TEST_ASSERT_EQUAL_INT(0, pieces);
 }
+
+// 500 ms after the order it has shown; the piece begins with that SIP.
+void test_a_piece_begins_half_a_second_after_the_order(void) {
+    argus_bend_ordered(&bend, k.pose.heading_cdeg, k.sip_ms);
+    drive(5 + 6, 10);
+    TEST_ASSERT_EQUAL_INT(1, pieces);
+    TEST_ASSERT_EQUAL_INT32(120, piece.way_mm);
+}
+
+void test_one_slow_wheel_is_a_turn_and_no_bend(void) {
+    k.vel_right_mm_s = 49;
+    drive(20, 10);
+    TEST_ASSERT_EQUAL_INT(0, pieces);
+    k.vel_right_mm_s = 50;
+    drive(1 + 6, 10);
+    TEST_ASSERT_EQUAL_INT(1, pieces);
+}
+
+void test_a_hit_from_behind_is_no_bend(void) {
+    k.bumpers_rear = 2;
+    drive(20, 10);
+    TEST_ASSERT_EQUAL_INT(0, pieces);
+}

@@ -244,3 +244,25 @@ void test_reach_is_what_geometry_gives(void) {
     TEST_ASSERT_EQUAL(252, argus_config_reach_mm(argus_robot_default(), 150));
     TEST_ASSERT_EQUAL(295, argus_config_reach_mm(argus_robot_default(), 200));
 }
+
+// What is in force is reported, whatever stands for it in the settings.
+void test_the_report_shows_what_auto_stands_for(void) {
+    argus_config_default(&config);
+    config.speed_mm_s = config.object_range_mm = config.check_range_mm = ARGUS_AUTO;
+    const argus_config_report_t report = argus_config_check(&config);
+    TEST_ASSERT_EQUAL(ARGUS_CONFIG_OK, report.fault);
+    argus_config_follow(&config, argus_config_follows(&config), argus_robot_default());
+    TEST_ASSERT_GREATER_THAN(0, config.speed_mm_s);
+    TEST_ASSERT_EQUAL(config.speed_mm_s, report.speed_mm_s);
+    TEST_ASSERT_EQUAL(config.object_range_mm, report.object_range_mm);
+    TEST_ASSERT_EQUAL(config.check_range_mm, report.check_range_mm);
+}
+
+// No speed is worked out of settings that are out of range.
+void test_what_is_out_of_range_is_not_worked_with(void) {
+    argus_config_default(&config);
+    config.speed_mm_s = ARGUS_AUTO;
+    config.noise_mm = INT32_MAX;
+    argus_config_follow(&config, argus_config_follows(&config), argus_robot_default());
+    TEST_ASSERT_EQUAL(200, config.speed_mm_s);
+}

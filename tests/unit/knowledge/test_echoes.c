@@ -278,3 +278,21 @@ void test_what_was_touched_stays(void) {
     TEST_ASSERT_EQUAL(e.touches.at[1].x_mm, argus_echoes_clear_mm(&e, &k, 0, 200));
     TEST_ASSERT_EQUAL(e.touches.at[1].x_mm, argus_echoes_nearest_mm(&e, &k, 0));
 }
+
+// Half of the body's width to either side is beside, not in the way.
+void test_what_lies_on_the_edge_of_the_way_is_not_in_it(void) {
+    place_echo(&e, &k, 1000, 200);
+    place_echo(&e, &k, 1000, -200);
+    TEST_ASSERT_EQUAL(INT32_MAX, argus_echoes_clear_mm(&e, &k, 0, 200));
+    TEST_ASSERT_EQUAL(1000, argus_echoes_clear_mm(&e, &k, 0, 201));
+}
+
+void test_a_place_beyond_16_bits_is_not_remembered(void) {
+    static const argus_point_t far[] = {{40000, 0}, {-40000, 0}, {0, 40000}, {0, -40000}};
+    for (size_t i = 0; i < sizeof far / sizeof far[0]; i++) {
+        argus_echoes_touched(&e, far[i], k.sip_ms);
+    }
+    TEST_ASSERT_EQUAL(0, e.count);
+    argus_echoes_touched(&e, (argus_point_t){INT16_MAX, -INT16_MAX}, k.sip_ms);
+    TEST_ASSERT_EQUAL(1, e.count);
+}

@@ -99,3 +99,16 @@ void test_an_unknown_id_is_an_error_without_a_name(void) {
         }
     }
 }
+
+void test_an_event_bears_the_time_and_the_state_and_none_is_none(void) {
+    argus_event_t out;
+    memset(&events, 0, sizeof events);
+    events.now_ms = 4711;
+    argus_emit_of(&events, ARGUS_EV_STEP, 5, -3);
+    argus_emit_event(&events, (argus_event_t){.id = 0});
+    TEST_ASSERT_TRUE(argus_events_pop(&events, &out));
+    TEST_ASSERT_EQUAL_UINT32(4711, out.t_ms);
+    TEST_ASSERT_EQUAL(5, out.sonar);
+    TEST_ASSERT_EQUAL(-3, out.value);
+    TEST_ASSERT_FALSE(argus_events_pop(&events, &out));
+}

@@ -226,3 +226,20 @@ void test_cells_are_rounded_down(void) {
         TEST_ASSERT_INT32_WITHIN(ARGUS_GRID_CELL_MM / 2 + 1, mm, centre.x_mm);
     }
 }
+
+// However far and on whichever axis the robot is put elsewhere, nothing of the old place shows there.
+void test_a_robot_put_elsewhere_on_one_axis_alone(void) {
+    static const argus_point_t by[] = {{100000, 0}, {-100000, 0}, {0, 100000}, {0, -100000}};
+    for (size_t i = 0; i < sizeof by / sizeof by[0]; i++) {
+        setUp();
+        reads(-1, 0);
+        argus_grid_mark(&g, (argus_point_t){1000, 1000}, true);
+        k.pose.x_mm += by[i].x_mm;
+        k.pose.y_mm += by[i].y_mm;
+        reads(-1, 0);
+        TEST_ASSERT_EQUAL(0, occupied());
+        const argus_point_t at = {k.pose.x_mm + 500, k.pose.y_mm - 500};
+        argus_grid_mark(&g, at, true);
+        TEST_ASSERT_TRUE(is_there(at));
+    }
+}

@@ -329,3 +329,60 @@ void test_a_wheel_that_no_robot_has_is_as_fast_as_the_fastest(void) {
         }
     }
 }
+
+void test_the_count_of_sips_at_rest_stops_at_its_end(void) {
+    for (int i = 0; i < UINT16_MAX + 5; i++) {
+        take(1000);
+    }
+    TEST_ASSERT_TRUE(argus_at_rest(&k));
+    TEST_ASSERT_EQUAL_UINT(UINT16_MAX, k.still_sips);
+}
+
+void test_a_place_is_set_back_and_its_fractions_with_it(void) {
+    take(1000);
+    k.x_um = 400;
+    k.y_um = -300;
+    k.pose.heading_cdeg = 4500;
+    const argus_pose_t to = {.x_mm = 12, .y_mm = -34, .heading_cdeg = 0};
+    argus_knowledge_set_back(&k, &to);
+    TEST_ASSERT_EQUAL(12, k.pose.x_mm);
+    TEST_ASSERT_EQUAL(-34, k.pose.y_mm);
+    TEST_ASSERT_EQUAL(0, k.x_um);
+    TEST_ASSERT_EQUAL(0, k.y_um);
+    TEST_ASSERT_EQUAL(4500, k.pose.heading_cdeg); // slip says nothing of it
+}
+
+// Silence has no distance that a deck could be taken off.
+void test_silence_of_another_deck_is_silence(void) {
+    argus_body_is(&k, argus_robot_chosen(4), 0); // peoplebot-sh
+    int others = 0;
+    for (int i = 0; i < k.sonars; i++) {
+        k.sonar[i].reading_mm = (uint16_t)k.robot->no_echo_mm;
+        TEST_ASSERT_EQUAL(k.robot->no_echo_mm, argus_reading_ahead_mm(&k, i));
+        k.sonar[i].reading_mm = 1500;
+        others += argus_reading_ahead_mm(&k, i) < 1500 ? 1 : 0;
+    }
+    TEST_ASSERT_GREATER_THAN(0, others);
+}
+
+// The trusted count; where there are none, those that are named. One that went stale is neither, though its
+// last reading is of now.
+void test_who_is_living(void) {
+    for (int i = 0; i < k.sonars; i++) {
+        put_health(&k.sonar[i], ARGUS_HEALTHY, ARGUS_KIND_NONE, 0);
+        k.sonar[i].reported = true;
+        k.sonar[i].heard_ms = now_ms;
+    }
+    const argus_mask_t all = argus_living(&k, 2000, now_ms);
+    TEST_ASSERT_EQUAL_HEX32(argus_robot_all(k.robot), all);
+    put_health(&k.sonar[3], ARGUS_STALE, ARGUS_KIND_NONE, now_ms);
+    put_health(&k.sonar[4], ARGUS_DISABLED, ARGUS_KIND_OFF, now_ms);
+    put_health(&k.sonar[5], ARGUS_SUSPECT, ARGUS_KIND_WRONG, now_ms);
+    TEST_ASSERT_EQUAL_HEX32(all & ~(7u << 3), argus_living(&k, 2000, now_ms));
+    for (int i = 0; i < k.sonars; i++) {
+        if (i != 5) {
+            put_health(&k.sonar[i], ARGUS_DISABLED, ARGUS_KIND_OFF, now_ms);
+        }
+    }
+    TEST_ASSERT_EQUAL_HEX32(1u << 5, argus_living(&k, 2000, now_ms));
+}

@@ -141,3 +141,9 @@ void test_beyond_the_frame_nothing_is_logged(void) {
     ping(FRONT);
     TEST_ASSERT_EQUAL(0, rays.count);
 }
+
+void test_beyond_the_frame_to_the_side_nothing_is_logged(void) {
+    k.pose.y_mm = 40000;
+    ping(FRONT);
+    TEST_ASSERT_EQUAL_INT(0, rays.count);
+}

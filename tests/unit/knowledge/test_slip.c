@@ -229,3 +229,15 @@ void test_a_restart_begins_anew(void) {
     argus_slip_restart(&slip);
     TEST_ASSERT_EQUAL(-1, drive(STRETCH_SIPS + 2, 0, 0));
 }
+
+// Many stay, and one hears what another heard there: the body did turn.
+void test_one_that_hears_what_was_there_denies_slip_in_a_turn(void) {
+    things();
+    TEST_ASSERT_EQUAL(-1, turn(60, false));
+    TEST_ASSERT_EQUAL(-1, listen(2, false));
+    k.pose.heading_cdeg += 6000;
+    TEST_ASSERT_EQUAL(-1, listen(3, true));
+    k.sonar[5].reading_mm = (uint16_t)(3000 - k.sonar[5].reading_mm); // as sonar 2 did, where it looks now
+    TEST_ASSERT_EQUAL(-1, listen(2, false));
+    TEST_ASSERT_EQUAL(0, slip.slips);
+}

@@ -87,3 +87,34 @@ void test_far_away_nothing_overflows(void) {
     argus_touches_add(&t, (argus_point_t){INT32_MIN / 4, 0});
     TEST_ASSERT_EQUAL(2, t.count);
 }
+
+// Evenly across the bow: each segment's middle.
+void test_segments_lie_side_by_side_across_the_body(void) {
+    const int segments = k.robot->front_bumpers;
+    const int wide_mm = k.robot->width_mm / segments;
+    for (int segment = 1; segment <= segments; segment++) {
+        setUp();
+        k.bumpers_front = (uint8_t)(1u << segment);
+        argus_touches_bumped(&t, &k);
+        TEST_ASSERT_INT_WITHIN(1, FRONT_MM, t.at[0].x_mm);
+        TEST_ASSERT_INT_WITHIN(1, (segments + 1 - 2 * segment) * wide_mm / 2, t.at[0].y_mm);
+    }
+}
+
+static int left_after(int sign, int by_mm) {
+    setUp();
+    argus_touches_end(&t, &k, sign);
+    k.pose.x_mm += by_mm;
+    argus_touches_leave(&t, &k);
+    return t.count;
+}
+
+// Somebody has let go of an end: what lies within 60 mm of it was that one, what lies farther off was not.
+void test_what_let_go_is_forgotten_at_either_end_and_nothing_else(void) {
+    TEST_ASSERT_EQUAL(0, left_after(1, 0));
+    TEST_ASSERT_EQUAL(0, left_after(1, -59));
+    TEST_ASSERT_EQUAL(3, left_after(1, -61));
+    TEST_ASSERT_EQUAL(0, left_after(-1, 0));
+    TEST_ASSERT_EQUAL(0, left_after(-1, 59));
+    TEST_ASSERT_EQUAL(3, left_after(-1, 61));
+}

@@ -29,3 +29,15 @@ void test_every_enumeration_is_named_from_end_to_end(void) {
     TEST_ASSERT_EQUAL_STRING("", argus_name(ARGUS_NAME_KIND, ARGUS_KIND_NONE));
     TEST_ASSERT_EQUAL_STRING("?", argus_name((argus_name_of_t)99, 1));
 }
+
+void test_why_driving_is_barred_is_named(void) {
+    TEST_ASSERT_EQUAL_STRING("", argus_name(ARGUS_NAME_BAR, ARGUS_BAR_NONE));
+    TEST_ASSERT_EQUAL_STRING("unknown", argus_name(ARGUS_NAME_BAR, 1));
+    TEST_ASSERT_EQUAL_STRING("sonars", argus_name(ARGUS_NAME_BAR, 3));
+    TEST_ASSERT_EQUAL_STRING("?", argus_name(ARGUS_NAME_BAR, 4));
+}
+
+void test_an_event_that_is_none_is_about_nothing(void) {
+    TEST_ASSERT_EQUAL_STRING("?", argus_name(ARGUS_NAME_SUBJECT, 0xFFFF));
+    TEST_ASSERT_EQUAL_STRING("?", argus_name(ARGUS_NAME_SUBJECT, -1));
+}
