@@ -106,8 +106,8 @@ class Chassis(ChassisState):
 
     @property
     def is_special(self) -> bool:
-        """Wheels may slip, or solids may move."""
-        return self._slip is not None or self._moving or not self._knows_free
+        """Wheels may slip, or solids may move of which nothing is known."""
+        return self._slip is not None or not self._knows_free
 
     @property
     def pose(self) -> Pose:

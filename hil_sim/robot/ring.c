@@ -8,10 +8,6 @@
 
 static const double sound_mm_ms = 343.0, step_ms = STEP_MS;
 
-typedef struct {
-    double x, y, th;
-} pose_t;
-
 static bool is_afflicted(const parts_t *const parts, const array_t *const array, const double now_ms) {
     const int32_t number = array->numbers[array->place];
     return !(array->next_ms > now_ms) && (number >= 64 || (parts->afflicted >> number & 1) != 0);
@@ -35,7 +31,7 @@ bool argus_sim_can_fire(const parts_t *const parts, const double now_ms) {
 }
 
 // Python's remainder has the sign of the divisor.
-static double wrapped(const double degrees) {
+double argus_sim_wrapped(const double degrees) {
     if (-180 < degrees && degrees <= 180) {
         return degrees;
     }
@@ -53,7 +49,7 @@ static pose_t kept(const chassis_t *const chassis, const int32_t back) {
 
 static pose_t pose_at(const chassis_t *const chassis, const double back_ms) {
     if (back_ms == 0) {
-        return (pose_t){chassis->x, chassis->y, wrapped(chassis->th)};
+        return (pose_t){chassis->x, chassis->y, argus_sim_wrapped(chassis->th)};
     }
     const double back = fmin(fmax(back_ms, 0.0) / step_ms, chassis->kept_count - 1.0);
     const int32_t k = (int32_t)back;
@@ -65,18 +61,38 @@ static pose_t pose_at(const chassis_t *const chassis, const double back_ms) {
         here.y += (before.y - here.y) * part;
         here.th += (before.th - here.th) * part;
     }
-    here.th = wrapped(here.th);
+    here.th = argus_sim_wrapped(here.th);
     return here;
 }
 
+// What moves, where it is now.
+static const patch_t *others_now(const parts_t *const parts) {
+    const movers_t *const movers = parts->movers;
+    others_t *const others = parts->others;
+    if (movers == NULL) {
+        return NULL;
+    }
+    if (others->moment != movers->moment) {
+        others->moment = movers->moment;
+        for (int32_t k = 0; k < movers->count; k++) {
+            const moved_t *const now = &movers->actors[k]->now;
+            double *const place = &others->places[4 * k];
+            place[0] = now->x, place[1] = now->y, place[2] = now->c, place[3] = now->s;
+        }
+        argus_sim_place(others->here, others->shape, others->owner, others->corner_owner, others->places);
+    }
+    return others->here;
+}
+
 static int32_t true_range(const parts_t *const parts, const int32_t number, const pose_t at) {
-    int32_t range = argus_sim_echo_ping(parts->echo, number, at.x, at.y, at.th, 0.0, 0.0, NULL);
+    const patch_t *const others = others_now(parts);
+    int32_t range = argus_sim_echo_ping(parts->echo, number, at.x, at.y, at.th, 0.0, 0.0, others);
     if (range == UNKNOWN_CELL) {
         const double heading = at.th * DEGREE;
         const double *const mount = &parts->mount[3 * number];
         const double c = cos(heading), s = sin(heading);
         parts->learn(at.x + mount[0] * c - mount[1] * s, at.y + mount[0] * s + mount[1] * c);
-        range = argus_sim_echo_ping(parts->echo, number, at.x, at.y, at.th, 0.0, 0.0, NULL);
+        range = argus_sim_echo_ping(parts->echo, number, at.x, at.y, at.th, 0.0, 0.0, others);
     }
     if (range < 0) {
         abort(); // no memory

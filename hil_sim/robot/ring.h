@@ -9,4 +9,7 @@
 bool argus_sim_can_fire(const parts_t *parts, double now_ms);
 void argus_sim_ring_advance(const parts_t *parts, double now_ms);
 
+// The same angle in (-180, 180] degrees.
+double argus_sim_wrapped(double degrees);
+
 #endif

@@ -99,7 +99,7 @@ class Robot(RobotState):
         self._logged_bumpers = 0
         self._watchdog_logged = False
         ring.enabled[:] = [False] * len(ring.enabled)
-        parts = Parts(self, table, self.drive, self.chassis, self.stall, self.energy, ring, faults)
+        parts = Parts(self, table, self.drive, self.chassis, self.stall, self.energy, ring, faults, moving)
         self._ticks: Ticks | None = ticks_of(parts)
 
     # ---- commands

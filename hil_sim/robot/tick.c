@@ -10,6 +10,8 @@
 #include <math.h>
 #include <stddef.h>
 
+enum { LOOK_MS = 50 };
+
 static const double step_s = (double)STEP_MS / 1000;
 
 // Which of two Python's min and max return where they are equal decides over the sign of a zero.
@@ -245,6 +247,13 @@ static bool go(const parts_t *const parts) {
     return true;
 }
 
+// Whether what moves may have come to the robot at rest, which Python looks for now and then.
+static bool is_to_look(const parts_t *const parts) {
+    const drive_t *const drive = parts->drive;
+    return parts->movers != NULL && drive->v == 0 && drive->w == 0 && parts->robot->now_ms % LOOK_MS == 0 &&
+           !(parts->chassis->free_mm > 0);
+}
+
 static bool move(const parts_t *const parts) {
     const drive_t *const drive = parts->drive;
     if (drive->v != 0 || drive->w != 0 || argus_sim_wants_motion(parts)) {
@@ -280,6 +289,16 @@ static bool is_awaited(const parts_t *const parts) {
     return false;
 }
 
+static void let_others_move(const parts_t *const parts, moment_t *const before) {
+    if (parts->movers == NULL) {
+        return;
+    }
+    chassis_t *const chassis = parts->chassis;
+    argus_sim_movers_keep(parts->movers, before);
+    argus_sim_movers_step(parts->movers, (pose_t){chassis->x, chassis->y, argus_sim_wrapped(chassis->th)});
+    chassis->free_mm -= parts->closing_mm;
+}
+
 // False: nothing has happened, and Python has to let this sub-step pass.
 static bool tick(const parts_t *const parts) {
     robot_t *const robot = parts->robot;
@@ -294,8 +313,10 @@ static bool tick(const parts_t *const parts) {
                              chassis->odo_y,   chassis->odo_th,      chassis->left_mm, chassis->right_mm,
                              chassis->free_mm, chassis->travelled_mm};
     const energy_t energy = *parts->energy;
+    moment_t moment;
     robot->now_ms += STEP_MS;
-    if (!move(parts) || is_awaited(parts)) {
+    let_others_move(parts, &moment);
+    if (!move(parts) || is_to_look(parts) || is_awaited(parts)) {
         robot->now_ms -= STEP_MS;
         *parts->drive = drive;
         *parts->stall = stall;
@@ -305,6 +326,9 @@ static bool tick(const parts_t *const parts) {
         back->odo_x = before[3], back->odo_y = before[4], back->odo_th = before[5];
         back->left_mm = before[6], back->right_mm = before[7];
         back->free_mm = before[8], back->travelled_mm = before[9];
+        if (parts->movers != NULL) {
+            argus_sim_movers_restore(parts->movers, &moment);
+        }
         return false;
     }
     remember(parts->chassis);

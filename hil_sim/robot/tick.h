@@ -4,13 +4,12 @@
 #define ARGUS_SIM_TICK_H
 
 #include "../sonar/echo.h"
+#include "../world/moving.h"
 
 #include <stdbool.h>
 #include <stdint.h>
 
-enum { STEP_MS = 10, HISTORY = 64, ARRAYS = 4, ORDER = 16, KEPT = 128 };
-
-#define DEGREE (3.14159265358979323846 / 180)
+enum { HISTORY = 64, ARRAYS = 4, ORDER = 16, KEPT = 128 };
 
 typedef struct {
     double v_max, rv_max, accel, decel, raccel, rdecel;
@@ -85,6 +84,15 @@ typedef struct {
     int32_t variable;
 } wait_t;
 
+// What is heard of people and doors (patch.py), as they were at a moment.
+typedef struct {
+    int64_t moment;
+    patch_t *here;
+    const patch_t *shape;
+    const int32_t *owner, *corner_owner;
+    double *places;
+} others_t;
+
 enum { WAITS = 32 };
 
 // A robot in a world, and what of its tables a sub-step asks for.
@@ -100,6 +108,9 @@ typedef struct {
     bitgen_t *bitgen;
     double (*normal)(bitgen_t *bitgen);
     void (*learn)(double x, double y); // the cell at a place is unknown to the echo model
+    movers_t *movers;                  // NULL: nothing moves but the robot
+    others_t *others;
+    double closing_mm; // by which the nearest of them comes nearer in a sub-step, at most
     double swing_mm, track_mm, accel_top, rotaccel_top;
     double mass_kg, inertia, rad2, accel_factor;
     double noise_mm, noise_part, crosstalk, min_mm, no_echo_mm;

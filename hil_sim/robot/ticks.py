@@ -11,18 +11,19 @@ from typing import Final
 
 import numpy as np
 
+from hil_sim import native
 from hil_sim.arcos import BUMPSTALL, SIP, TIMING
 from hil_sim.faults.execute import FaultSet
 from hil_sim.robot.chassis import Chassis
 from hil_sim.robot.drive import Drive
 from hil_sim.robot.energy import ACCEL_FACTOR, INERTIA_KG_M2, MASS_KG, Energy
-from hil_sim.robot.interfaces import Faults, Ring, SonarReading
+from hil_sim.robot.interfaces import Faults, Moving, Ring, SonarReading
 from hil_sim.robot.stall import StallMonitor
 from hil_sim.robot.state import RobotState
-from hil_sim.sonar import kernel
 from hil_sim.sonar.params import MIN_MM, NO_ECHO_MM, Reading
 from hil_sim.sonar.ring import RESUME_MS, SonarRing
 from hil_sim.tables.robot import RobotTable
+from hil_sim.world.step import STEP_S
 
 _WAITS: Final = 32
 _VARIABLES: Final = ("t", "x", "y", "travelled")
@@ -45,6 +46,9 @@ class _Parts(ctypes.Structure):
     _fields_ = [
         *((name, ctypes.c_void_p) for name in _POINTERS),
         ("learn", _LEARN),
+        ("movers", ctypes.c_void_p),
+        ("others", ctypes.c_void_p),
+        ("closing_mm", ctypes.c_double),
         *((name, ctypes.c_double) for name in _NUMBERS),
         ("mount", ctypes.c_void_p),
         *((name, ctypes.c_int64) for name in ("watchdog_ms", "resume_ms")),
@@ -77,6 +81,7 @@ class Parts:
     energy: Energy
     ring: Ring
     faults: Faults | None
+    moving: Moving | None
 
 
 class Ticks:
@@ -124,6 +129,9 @@ class Ticks:
             stalls_rear=BUMPSTALL["REAR"],
             afflicted=0 if ring.is_plain else _ALL,
         )
+        if ring.moving is not None and ring.others is not None:
+            self._parts.movers, self._parts.others = ctypes.addressof(ring.moving), ring.others.for_c()
+            self._parts.closing_mm = ring.moving.fastest_mm_s * STEP_S
         self.address = ctypes.addressof(self._parts)
 
     def run(self, stop_ms: float, limit_ms: float) -> bool:
@@ -167,9 +175,11 @@ class Ticks:
 def ticks_of(robot: Parts) -> Ticks | None:
     """Return the sub-steps that C can do of a robot; None where there are none, since more goes on in each."""
     ring, normal = robot.ring, _normal()
-    found = kernel.library()
+    found = native.library()
     if found is None or normal is None or not isinstance(ring, SonarRing) or ring.echoes.handle is None:
         return None
     if robot.chassis.is_special or not isinstance(robot.faults, FaultSet | None):
+        return None
+    if robot.moving is not ring.moving or (ring.moving is not None and not ring.moving.fits_c):
         return None
     return Ticks(robot, ring, found.argus_sim_run, normal)

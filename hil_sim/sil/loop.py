@@ -7,6 +7,7 @@ import ctypes
 from collections.abc import Callable
 from typing import Any, Final
 
+from hil_sim import native
 from hil_sim.arcos import ARGUMENT, COMMAND, FLAG, SIP, TYPE
 from hil_sim.core.library import Core
 from hil_sim.robot import energy
@@ -14,7 +15,6 @@ from hil_sim.robot.report import other_flags
 from hil_sim.server.server import ArcosServer
 from hil_sim.sil.line import Line
 from hil_sim.sil.noted import NotedRobot
-from hil_sim.sonar import kernel
 
 _HELD: Final = 128
 _NOTES: Final = 1 << 16
@@ -134,7 +134,7 @@ class Loop:
         look: Callable[[], None],
         taken: Callable[[bytes], None],
     ) -> None:
-        found = kernel.library()
+        found = native.library()
         assert found is not None
         self.of = of
         core, robot, server = of

@@ -14,4 +14,8 @@ enum { UNKNOWN_CELL = -1, NO_MEMORY = -2 };
 int32_t argus_sim_echo_ping(echo_t *self, int32_t sonar, double x, double y, double heading_deg,
                             double angle_deg, double gain_db, const patch_t *others);
 
+// Each segment and corner in the axes of its owner becomes one of the world; `places`: x, y, cosine, sine.
+void argus_sim_place(patch_t *here, const patch_t *shape, const int32_t *owner, const int32_t *corner_owner,
+                     const double *places);
+
 #endif

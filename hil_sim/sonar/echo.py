@@ -8,6 +8,7 @@ from typing import Final
 
 import numpy as np
 
+from hil_sim import native
 from hil_sim.sonar import kernel
 from hil_sim.sonar.params import MIN_MM, NO_ECHO_MM, SonarParams, transducer_pose
 from hil_sim.sonar.patch import MovingEchoes, Patch, find_corners
@@ -50,7 +51,7 @@ class EchoModel:
             offsets, half = self._with_side_lobes(offsets)
         self._ray_cos, self._ray_sin = np.cos(np.radians(offsets)), np.sin(np.radians(offsets))
         self._cos_half = math.cos(math.radians(half))
-        self._kernel = self._new_kernel() if in_c and kernel.library() is not None else None
+        self._kernel = self._new_kernel() if in_c and native.library() is not None else None
 
     def _with_side_lobes(self, offsets: Floats) -> tuple[Floats, float]:
         """Add rays beside the cone, which lose as much everywhere; return all of them, and half the width then."""

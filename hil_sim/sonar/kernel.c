@@ -68,14 +68,12 @@ typedef struct {
 echo_t *argus_sim_echo_new(const model_t *model);
 void argus_sim_echo_free(echo_t *self);
 int32_t argus_sim_echo_add(echo_t *self, int32_t column, int32_t row, const patch_t *patch);
-void argus_sim_place(patch_t *here, const patch_t *shape, const int32_t *owner, const int32_t *corner_owner,
-                     const double *places);
 int32_t argus_sim_echo_range(echo_t *self, double x, double y, double heading_deg, double gain_db,
                              const patch_t *others);
 uint32_t argus_sim_version(void);
 
 uint32_t argus_sim_version(void) {
-    return 5;
+    return 6;
 }
 
 static const double deg_per_rad = 180.0 / 3.14159265358979323846;
@@ -167,7 +165,6 @@ int32_t argus_sim_echo_add(echo_t *const self, const int32_t column, const int32
     return 0;
 }
 
-// Each segment and corner in the axes of its owner becomes one of the world; `places`: x, y, cosine, sine.
 void argus_sim_place(patch_t *const here, const patch_t *const shape, const int32_t *const owner,
                      const int32_t *const corner_owner, const double *const places) {
     for (int32_t k = 0; k < shape->segments; k++) {

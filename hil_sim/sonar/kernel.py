@@ -4,26 +4,13 @@
 from __future__ import annotations
 
 import ctypes
-import os
 from collections.abc import Mapping, Sequence
-from functools import cache
-from pathlib import Path
 from typing import Any, Final
 
-from hil_sim.errors import SimError
+from hil_sim.native import library
 
-LIBRARY_VARIABLE: Final = "ARGUS_SIM_KERNEL"
-"""Names the library to load, or is `off`."""
-VERSION: Final = 5
 UNKNOWN_CELL: Final = -1
 _NO_MEMORY: Final = -2
-_ROOT: Final = Path(__file__).resolve().parents[2]
-_PLACES: Final = (
-    Path(__file__).with_name("libargus_sim.so"),  # in a package
-    *(_ROOT / "build" / preset / "libargus_sim.so" for preset in ("release", "debug")),
-    Path("/usr/local/lib/libargus_sim.so"),
-    Path("/usr/lib/libargus_sim.so"),
-)
 PATCH_ARRAYS: Final = (
     "ax", "ay", "ex", "ey", "length", "mirror", "corner_x", "corner_y", "inverse", "retro",
 )  # fmt: skip
@@ -49,53 +36,6 @@ class _Model(ctypes.Structure):
         ("rays", ctypes.c_int32),
         ("sonars", ctypes.c_int32),
     ]
-
-
-_HANDLE: Final = ctypes.c_void_p
-_PLACE: Final = (ctypes.c_double, ctypes.c_double, ctypes.c_double)
-_FUNCTIONS: Final[dict[str, tuple[Any, tuple[Any, ...]]]] = {
-    "argus_sim_echo_new": (_HANDLE, (ctypes.POINTER(_Model),)),
-    "argus_sim_echo_free": (None, (_HANDLE,)),
-    "argus_sim_echo_add": (
-        ctypes.c_int32,
-        (_HANDLE, ctypes.c_int32, ctypes.c_int32, ctypes.c_void_p),
-    ),
-    "argus_sim_place": (None, (ctypes.c_void_p,) * 5),
-    "argus_sim_echo_range": (ctypes.c_int32, (_HANDLE, *_PLACE, ctypes.c_double, ctypes.c_void_p)),
-    "argus_sim_run": (ctypes.c_bool, (ctypes.c_void_p, ctypes.c_double, ctypes.c_double)),
-    "argus_sim_loop": (None, (ctypes.c_void_p, ctypes.c_double)),
-    "argus_sim_loop_size": (ctypes.c_size_t, ()),
-    "argus_sim_echo_ping": (
-        ctypes.c_int32,
-        (_HANDLE, ctypes.c_int32, *_PLACE, ctypes.c_double, ctypes.c_double, ctypes.c_void_p),
-    ),
-}
-
-
-@cache
-def library() -> ctypes.CDLL | None:
-    """Return libargus_sim.so: as ARGUS_SIM_KERNEL says, else of our package, the build folder, the system; or None."""
-    given = os.environ.get(LIBRARY_VARIABLE)
-    if given == "off":
-        return None
-    path = Path(given) if given else next((place for place in _PLACES if place.exists()), None)
-    if path is None:
-        return None
-    try:
-        found = ctypes.CDLL(str(path))
-        if found.argus_sim_version() != VERSION:
-            raise OSError(f"version {found.argus_sim_version()}, not {VERSION}")
-        for name, (result, arguments) in _FUNCTIONS.items():
-            function = getattr(found, name)
-            function.restype, function.argtypes = result, arguments
-    except (OSError, AttributeError) as error:
-        # One that was built from other sources is as good as none, unless it was asked for.
-        if given:
-            raise SimError(
-                f"{LIBRARY_VARIABLE}={given}: not this version's libargus_sim.so ({error}); build it again"
-            ) from error
-        return None
-    return found
 
 
 class Patch:

@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+import ctypes
 import math
 
 import numpy as np
 
 from hil_sim.sonar import kernel
 from hil_sim.sonar.params import SonarParams
+from hil_sim.sonar.state import OthersState
 from hil_sim.world.model import Floats
 from hil_sim.world.moving import MovingSolids
 
@@ -67,12 +69,12 @@ def find_corners(segments: Floats) -> Floats:
     return np.array(rows, dtype=np.float64).reshape(-1, 7)
 
 
-class MovingEchoes:
+class MovingEchoes(OthersState):
     """The solids in motion of one run, as a patch that follows them."""
 
     def __init__(self, moving: MovingSolids, params: SonarParams) -> None:
+        super().__init__(_moment=-1)
         self._moving = moving
-        self._moment = -1
         corners = [find_corners(actor.shape) for actor in moving.actors]
         self._owner = moving.owner
         counts = [len(rows) for rows in corners]
@@ -96,6 +98,13 @@ class MovingEchoes:
                     self._placer = kernel.Placer(self._patch.for_c, self._shape.for_c, *arrays)
                 self._placer.place()
         return self._patch
+
+    def for_c(self) -> int:
+        """Return where C finds the same arrays."""
+        self._here, self._forms = self._patch.for_c.address, self._shape.for_c.address
+        self._owners, self._corner_owners = self._owner.ctypes.data, self._corner_owner.ctypes.data
+        self._places = self._moving.places.ctypes.data
+        return ctypes.addressof(self)
 
     def _place(self) -> None:
         here, shape = self._patch, self._shape

@@ -124,7 +124,7 @@ class SonarRing(RingState):
         self._kinds: list[str | None] = [None]
         self._fire_ms = -math.inf
         self._ready_ms = math.inf
-        self._moving = moving
+        self.moving = moving
         self._moving_echoes = MovingEchoes(moving, self.params) if moving is not None else None
         self._known: dict[int, tuple[Pose, int, int]] = {}
 
@@ -186,7 +186,12 @@ class SonarRing(RingState):
     @property
     def is_plain(self) -> bool:
         """Pings are as the plain model has them, apart from faults."""
-        return self._rough is None and self._moving is None
+        return self._rough is None
+
+    @property
+    def others(self) -> MovingEchoes | None:
+        """What is heard of solids that move."""
+        return self._moving_echoes
 
     @property
     def switched(self) -> bool:
@@ -311,7 +316,7 @@ class SonarRing(RingState):
 
     def true_range(self, number: int, pose: Pose) -> int:
         """Return what a sonar reads at a pose without noise, crosstalk and faults."""
-        moment = self._moving.moment if self._moving is not None else 0
+        moment = self.moving.moment if self.moving is not None else 0
         known = self._known.get(number)
         if known is not None and known[1] == moment and (known[0] is pose or known[0] == pose):
             return known[2]

@@ -18,6 +18,21 @@ _KEPT: Final = 128
 _ROW: Final = struct.Struct("=diiii")
 
 
+class OthersState(ctypes.Structure):
+    """What is heard of people and doors as they were at a moment, and the arrays that tell it."""
+
+    _moment: int
+    _here: int | None
+    _forms: int | None
+    _owners: int | None
+    _corner_owners: int | None
+    _places: int | None
+    _fields_ = [
+        ("_moment", ctypes.c_int64),
+        *((name, ctypes.c_void_p) for name in ("_here", "_forms", "_owners", "_corner_owners", "_places")),
+    ]
+
+
 class ArrayState(ctypes.Structure):
     """The firing state of one array; next_ms: NaN until it is known."""
 

@@ -3,12 +3,18 @@
 
 from __future__ import annotations
 
+import ctypes
+import itertools
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Final, Protocol, TypeAlias
 
+from hil_sim.native import library
 from hil_sim.tables.robot import BodyShape, robot_table
 from hil_sim.world.model import Pose, World
+from hil_sim.world.state import body_state
 
 _SEGMENTS: Final = 5
 """Strips of each end that a contact is told by: as many as a bumper has segments, whether there is one or not."""
@@ -51,7 +57,8 @@ class BodyModel:
         self.shape = shape if shape is not None else robot_table().body
         self._reach_mm = self.shape.reach_mm
         self._solids = [(float(a), float(b), float(c), float(d)) for a, b, c, d in world.segments]
-        self._cells: dict[tuple[int, int], list[tuple[float, float, float, float]]] = {}
+        self._cells: dict[tuple[int, int], _Solids] = {}
+        self._measure = _measure_in_c(self.shape) or _measure_in_python(self.shape)
         self._last: tuple[float, float, float] | None = None
         self._last_clearance = 0.0
 
@@ -74,7 +81,7 @@ class BodyModel:
     def _still_pieces(self, pose: Pose) -> list[Segment]:
         if self._last is not None and self._travel(pose, self._last) < self._last_clearance:
             return []
-        pieces = self._pieces(pose, self._near(pose))
+        pieces = self._pieces(pose, self._near(pose).segments)
         if not pieces:
             self._remember(pose, self._measure(pose, self._near(pose)))
         return pieces
@@ -92,7 +99,7 @@ class BodyModel:
         if self._moving is None:
             return self._last_clearance
         reach = self._last_clearance + self._reach_mm
-        return min(self._last_clearance, self._measure(pose, self._moving.near(pose, reach)))
+        return min(self._last_clearance, self._measure(pose, _Solids(self._moving.near(pose, reach))))
 
     def _remember(self, pose: Pose, clearance: float) -> None:
         self._last = (pose.x_mm, pose.y_mm, pose.heading_deg)
@@ -103,22 +110,60 @@ class BodyModel:
         turn = abs((pose.heading_deg - last[2] + 180) % 360 - 180)
         return math.hypot(pose.x_mm - last[0], pose.y_mm - last[1]) + math.radians(turn) * self._reach_mm
 
-    def _near(self, pose: Pose) -> list[tuple[float, float, float, float]]:
+    def _near(self, pose: Pose) -> _Solids:
         """Solids within the search distance of the pose's grid cell."""
         cell = (math.floor(pose.x_mm / _CELL_MM), math.floor(pose.y_mm / _CELL_MM))
         if cell not in self._cells:
             x, y = (cell[0] + 0.5) * _CELL_MM, (cell[1] + 0.5) * _CELL_MM
             limit = _SEARCH_MM + self._reach_mm + _CELL_MM
-            self._cells[cell] = [s for s in self._solids if _point_distance(x, y, *s) <= limit]
+            self._cells[cell] = _Solids([s for s in self._solids if _point_distance(x, y, *s) <= limit])
         return self._cells[cell]
 
-    def _measure(self, pose: Pose, segments: list[Segment]) -> float:
+
+class _Solids:
+    """Segments, and the same as C wants them."""
+
+    def __init__(self, segments: list[Segment]) -> None:
+        self.segments = segments
+
+    @cached_property
+    def for_c(self) -> ctypes.Array[ctypes.c_double]:
+        return (ctypes.c_double * (4 * len(self.segments)))(*itertools.chain.from_iterable(self.segments))
+
+
+_Measure: TypeAlias = Callable[[Pose, _Solids], float]
+"""Returns the distance from the body to the nearest solid, at most `_SEARCH_MM`."""
+
+
+def _measure_in_c(shape: BodyShape) -> _Measure | None:
+    found = library()
+    if found is None:
+        return None
+    body, clearance = body_state(shape), found.argus_sim_clearance
+
+    def measure(pose: Pose, solids: _Solids) -> float:
+        at = pose.x_mm, pose.y_mm, pose.heading_deg
+        nearest: float = clearance(ctypes.byref(body), *at, solids.for_c, len(solids.segments), _SEARCH_MM)
+        return nearest
+
+    return measure
+
+
+def _measure_in_python(shape: BodyShape) -> _Measure:
+    def measure(pose: Pose, solids: _Solids) -> float:
         best = _SEARCH_MM
-        for segment in segments:
+        for segment in solids.segments:
             # The rectangle lies within the reach of the centre: most solids are too far to improve on `best`.
-            if _point_distance(pose.x_mm, pose.y_mm, *segment) - self._reach_mm < best:
-                best = min(best, body_distance(pose, segment, self.shape))
+            if _point_distance(pose.x_mm, pose.y_mm, *segment) - shape.reach_mm < best:
+                best = min(best, body_distance(pose, segment, shape))
         return best
+
+    return measure
+
+
+def distance(dx: float, dy: float) -> float:
+    """Return the length of a difference: as moving.c forms it, to the last bit."""
+    return math.sqrt(dx * dx + dy * dy)
 
 
 def body_distance(pose: Pose, segment: Segment, shape: BodyShape) -> float:
@@ -176,7 +221,7 @@ def _point_distance(px: float, py: float, x1: float, y1: float, x2: float, y2: f
     length = dx * dx + dy * dy
     t = ((px - x1) * dx + (py - y1) * dy) / length if length > 0 else 0.0
     t = min(1.0, max(0.0, t))
-    return math.hypot(x1 + t * dx - px, y1 + t * dy - py)
+    return distance(x1 + t * dx - px, y1 + t * dy - py)
 
 
 def _rectangle_distance(shape: BodyShape, x1: float, y1: float, x2: float, y2: float) -> float:
@@ -187,4 +232,4 @@ def _rectangle_distance(shape: BodyShape, x1: float, y1: float, x2: float, y2: f
 
 
 def _outside(shape: BodyShape, x: float, y: float) -> float:
-    return math.hypot(max(x - shape.front_mm, -shape.rear_mm - x, 0.0), max(abs(y) - shape.half_mm, 0.0))
+    return distance(max(x - shape.front_mm, -shape.rear_mm - x, 0.0), max(abs(y) - shape.half_mm, 0.0))

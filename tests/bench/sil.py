@@ -8,8 +8,8 @@ import statistics
 import time
 from collections.abc import Mapping
 
+from hil_sim import native
 from hil_sim.sil import Mission, Sil
-from hil_sim.sonar import kernel
 from hil_sim.world.files import load_world
 from hil_sim.world.movers import Door, Person
 
@@ -62,7 +62,7 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=120.0, help="robot time of a mission")
     parser.add_argument("--repeats", type=int, default=5)
     arguments = parser.parse_args()
-    how = "in C" if kernel.library() is not None else "with numpy (libargus_sim.so is not built)"
+    how = "in C" if native.library() is not None else "with numpy (libargus_sim.so is not built)"
     print(f"software in the loop, world {arguments.world}, echoes {how}, one core, processor time")
     for name, mission in _missions(arguments.world, arguments.seconds).items():
         _report(name, mission, arguments.repeats)

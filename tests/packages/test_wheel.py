@@ -22,14 +22,14 @@ import doctest, sys
 import argus, argus.sil
 from hil_sim.core import build as core_build
 from hil_sim.core import library as core
-from hil_sim.sonar import kernel
+from hil_sim import native
 
 def refuse(*arguments):
     raise AssertionError("the core is compiled here")
 
 core.build = refuse
 assert core.library()._name.startswith(sys.prefix), core.library()._name
-assert kernel.library()._name.startswith(sys.prefix), kernel.library()._name
+assert native.library()._name.startswith(sys.prefix), native.library()._name
 result = doctest.testfile(sys.argv[1], module_relative=False)
 assert result.attempted > 20 and not result.failed
 print(argus.__version__)

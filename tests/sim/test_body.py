@@ -11,7 +11,9 @@ import random
 import numpy as np
 import pytest
 
+from hil_sim import native
 from hil_sim.tables import load
+from hil_sim.world import body
 from hil_sim.world.body import BodyModel
 from hil_sim.world.model import Pose, World
 
@@ -176,3 +178,20 @@ def test_a_solid_wholly_inside_the_body_is_met() -> None:
     contact = BodyModel(world_of((-5, 3, 5, 3))).contact(Pose(0, 0, 77), 0.0)
     assert contact is not None
     assert (contact.front_segments, contact.rear_segments) == (0, 0)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_clearance_in_c_is_that_of_python(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert native.library() is not None, "libargus_sim.so is not built: run tools/dev build release"
+    rng = random.Random(f"clearance {seed}")
+    world = random_world(rng)
+    in_c = BodyModel(world)
+    with monkeypatch.context() as patch:
+        patch.setattr(body, "library", lambda: None)
+        in_python = BodyModel(world)
+    near = 0
+    for _ in range(200):
+        pose = Pose(rng.uniform(-1500, 1500), rng.uniform(-1500, 1500), rng.uniform(-180, 180))
+        assert in_c.clearance_mm(pose) == in_python.clearance_mm(pose), f"seed {seed}: {pose}"
+        near += 0 < in_c.clearance_mm(pose) < FARTHEST
+    assert near > 20

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from hil_sim import native
 from hil_sim.errors import SimError
-from hil_sim.sonar import kernel
 from hil_sim.sonar.echo import EchoModel
 from hil_sim.sonar.params import SonarParams
 from hil_sim.sonar.patch import MovingEchoes
@@ -28,7 +28,7 @@ ROUGH = SonarParams(specular=False, margin_db=60.0)
 
 
 def built() -> None:
-    assert kernel.library() is not None, "libargus_sim.so is not built: run tools/dev build release"
+    assert native.library() is not None, "libargus_sim.so is not built: run tools/dev build release"
 
 
 def models(world: World, params: SonarParams) -> tuple[EchoModel, EchoModel]:
@@ -126,7 +126,7 @@ def test_an_empty_world_and_a_very_large_one() -> None:
 
 
 def says(value: str) -> tuple[int, str]:
-    program = "from hil_sim.sonar import kernel; print(kernel.library() is not None)"
+    program = "from hil_sim import native; print(native.library() is not None)"
     done = subprocess.run(
         [sys.executable, "-c", program],
         env={"ARGUS_SIM_KERNEL": value, "PATH": "/usr/bin:/bin"},
@@ -149,9 +149,9 @@ def test_a_stale_library_of_the_build_folder_is_passed_over(
 ) -> None:
     stale = tmp_path / "libargus_sim.so"
     stale.write_bytes(b"no library")
-    monkeypatch.delenv(kernel.LIBRARY_VARIABLE, raising=False)
-    monkeypatch.setattr(kernel, "_PLACES", (stale,))
-    assert kernel.library.__wrapped__() is None
-    monkeypatch.setenv(kernel.LIBRARY_VARIABLE, str(stale))
+    monkeypatch.delenv(native.LIBRARY_VARIABLE, raising=False)
+    monkeypatch.setattr(native, "_PLACES", (stale,))
+    assert native.library.__wrapped__() is None
+    monkeypatch.setenv(native.LIBRARY_VARIABLE, str(stale))
     with pytest.raises(SimError, match="build it again"):
-        kernel.library.__wrapped__()
+        native.library.__wrapped__()

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from doubles import Session, cmd, make_robot, sips
 
+from hil_sim import native
 from hil_sim.cli.arguments import parser
 from hil_sim.cli.choose import scenario_of
 from hil_sim.errors import SimError
@@ -23,7 +24,6 @@ from hil_sim.scenario.scenario import Scenario, load_scenario
 from hil_sim.server.mobilesim import MobileSimServer
 from hil_sim.server.server import ArcosServer
 from hil_sim.sil import Mission, run
-from hil_sim.sonar import kernel
 from hil_sim.sonar.echo import EchoModel
 from hil_sim.sonar.params import NO_ECHO_MM, Reading, SonarParams
 from hil_sim.sonar.ring import SonarRing
@@ -165,7 +165,7 @@ def test_the_ping_of_the_other_array_is_heard_when_it_comes_sooner() -> None:
     assert all(value < min(plain) for value in changed)
 
 
-@pytest.mark.skipif(kernel.library() is None, reason="libargus_sim.so is not built")
+@pytest.mark.skipif(native.library() is None, reason="libargus_sim.so is not built")
 @pytest.mark.parametrize("name", ["office", "lab", "smooth", "posts"])
 def test_gain_and_side_lobes_are_the_same_in_c_and_numpy(name: str) -> None:
     world = load_world(name)

@@ -3,11 +3,13 @@
 
 from __future__ import annotations
 
+import math
 import random
 from typing import Any
 
 import pytest
 
+from hil_sim import native
 from hil_sim.errors import SimError
 from hil_sim.faults.execute import FaultSet
 from hil_sim.faults.grammar import parse_fault
@@ -16,10 +18,9 @@ from hil_sim.robot import robot as robot_module
 from hil_sim.sil import Mission, Sil
 from hil_sim.sil.outcome import Outcome
 from hil_sim.sil.run import Sighting, Trace
-from hil_sim.sonar import kernel
 from hil_sim.tables.robot import DEFAULT_ROBOT, robot_table
 from hil_sim.world.files import load_world, world_names
-from hil_sim.world.movers import Person
+from hil_sim.world.movers import Door, Mover, Person
 
 FEW, MANY = 40, 1000
 LIMIT_S = 12.0
@@ -40,6 +41,35 @@ def usable(text: str, robot: str = DEFAULT_ROBOT) -> bool:
     return True
 
 
+def others(rng: random.Random, x: float, y: float) -> tuple[Mover, ...]:
+    """People and doors round a start, some of whom wait for the robot."""
+
+    def place(least_mm: float) -> tuple[float, float]:
+        far, way = rng.uniform(least_mm, 2500), rng.uniform(0, 2 * math.pi)
+        return x + far * math.cos(way), y + far * math.sin(way)
+
+    made: list[Mover] = []
+    for _ in range(rng.randint(1, 4)):
+        near = [place(900) for _ in range(rng.randint(2, 4))]
+        made.append(
+            Person(
+                tuple(near),
+                speed=rng.choice((300.0, 800.0, 2000.0)),
+                radius=rng.choice((150.0, 300.0)),
+                pause=rng.choice((0.0, 1.0)),
+                loop=rng.random() < 0.8,
+                delay=rng.choice((0.0, 3.0)),
+                yields=rng.random() < 0.7,
+                patience=rng.choice((0.0, 1.0, 10.0)),
+            )
+        )
+    if rng.random() < 0.5:
+        made.append(
+            Door(place(1500), closed=rng.uniform(-180, 180), open=30.0, period=6.0, yields=rng.random() < 0.7)
+        )
+    return tuple(made)
+
+
 def mission(seed: int) -> Mission:
     """Anything that the emulator can do; most of it plain."""
     rng = random.Random(f"ticks {seed}")
@@ -47,7 +77,7 @@ def mission(seed: int) -> Mission:
     world = load_world(name)
     points = [(p.x_mm, p.y_mm) for p in world.goals.values()] or [(world.start.x_mm + 1000, world.start.y_mm)]
     x, y = world.start.x_mm, world.start.y_mm
-    people = (Person(((x + 1500.0, y - 300.0), (x + 1500.0, y + 900.0))),) if rng.random() < 0.1 else ()
+    movers = others(rng, x, y) if rng.random() < 0.3 else ()
     robot = rng.choice(("p3dx-sh", "p3dx-sh", "p3at-sh", "amigo-sh", "peoplebot-sh"))
     faults = [text for text in FAULTS if usable(text, robot)]
     return Mission(
@@ -60,7 +90,7 @@ def mission(seed: int) -> Mission:
         quirks="mobilesim" if rng.random() < 0.05 else "robot",
         physics=rng.choice(PHYSICS),
         faults=tuple(rng.sample(faults, rng.choice((0, 0, 1, 2)))),
-        movers=people,
+        movers=movers,
         config={"profile": rng.choice(("argus", "paper"))},
     )
 
@@ -108,7 +138,7 @@ def run(one: Mission, monkeypatch: pytest.MonkeyPatch, *, in_c: bool) -> tuple[O
 
 
 def compare(seeds: range, monkeypatch: pytest.MonkeyPatch) -> None:
-    assert kernel.library() is not None, "libargus_sim.so is not built: run tools/dev build release"
+    assert native.library() is not None, "libargus_sim.so is not built: run tools/dev build release"
     drove = 0
     for seed in seeds:
         one = mission(seed)
@@ -163,6 +193,22 @@ def test_most_sub_steps_of_a_plain_drive_are_in_c(monkeypatch: pytest.MonkeyPatc
     assert outcome.driven_mm > 1000
     assert steps < 30.0 * 100 / 5, f"{steps} of 3000 in Python"
     assert turns < 30.0 * 50 / 5, f"{turns} of some 1500 in Python"
+
+
+def test_most_sub_steps_among_people_are_in_c(monkeypatch: pytest.MonkeyPatch) -> None:
+    steps = 0
+
+    def counted(self: Any) -> None:
+        nonlocal steps
+        steps += 1
+        original(self)
+
+    original = robot_module.Robot.step
+    monkeypatch.setattr(robot_module.Robot, "step", counted)
+    people = tuple(Person(((1500.0 + k, -1500.0), (1500.0 + k, 1500.0))) for k in range(0, 1000, 300))
+    outcome = Sil(Mission("office", ((2300.0, 1000.0),), limit_s=30.0, movers=people)).run()
+    assert outcome.driven_mm > 500
+    assert steps < 30.0 * 100 / 4, f"{steps} of 3000 in Python"
 
 
 def test_an_error_in_a_trace_comes_out() -> None:
