@@ -309,10 +309,11 @@ static void take_rest(const argus_grant_t *const grant, argus_port_t *const self
     case ARGUS_TOPIC_STREAM:
         self->streams |= pass(grant, self, said) ? argus_send_stream(said->command, said->argument) : 0;
         break;
-    default:
-        ARGUS_ASSERT(said->topic == ARGUS_TOPIC_PASSED);
+    case ARGUS_TOPIC_PASSED:
         pass(grant, self, said);
         break;
+    default:   // GCOV_EXCL_LINE: none is left; one that is forgotten here passes nothing
+        break; // GCOV_EXCL_LINE
     }
 }
 

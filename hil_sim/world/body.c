@@ -51,15 +51,15 @@ static double from_point(const double px, const double py, const segment_t segme
     return argus_sim_length(segment.x1 + t * dx - px, segment.y1 + t * dy - py);
 }
 
-double argus_sim_body_distance(const body_t *const body, const pose_t robot, const segment_t of_world) {
-    const segment_t segment = to_body(robot, of_world);
-    if (meets(body, segment)) {
+double argus_sim_body_distance(const body_t *const body, const pose_t robot, const segment_t segment) {
+    const segment_t seen = to_body(robot, segment);
+    if (meets(body, seen)) {
         return 0.0;
     }
     const double x[] = {body->front_mm, -body->rear_mm}, y[] = {body->half_mm, -body->half_mm};
-    double nearest = fmin(outside(body, segment.x1, segment.y1), outside(body, segment.x2, segment.y2));
+    double nearest = fmin(outside(body, seen.x1, seen.y1), outside(body, seen.x2, seen.y2));
     for (int32_t k = 0; k < 4; k++) {
-        nearest = fmin(nearest, from_point(x[k / 2], y[k % 2], segment));
+        nearest = fmin(nearest, from_point(x[k / 2], y[k % 2], seen));
     }
     return nearest;
 }
