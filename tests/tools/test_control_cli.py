@@ -7,13 +7,15 @@ import json
 import socket
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
 import pytest
 from argus_tools.control import cli
 from argus_tools.control.cli import EXIT_OK, EXIT_REFUSED, main, make_parser
+from argus_tools.control.client import Refused
+from argus_tools.control.script import Ask, Rest, Session, Step
 
 Message = dict[str, Any]
 GREETING = {"control": 1, "argus": "0.1.0", "auth": "none"}
@@ -30,8 +32,13 @@ def status(t: float, mode: str) -> Message:
     return {"t": t, "event": "STATUS", "mode": mode}
 
 
-def argusd(folder: Path, before: list[Message], after: list[Message], **noted: str) -> str:
-    """One that obeys every order; it streams BEFORE ahead of its reply to the order, and AFTER behind it."""
+def argusd(
+    folder: Path, before: list[Message], after: list[Message], refusals: Sequence[str] = (), **noted: str
+) -> str:
+    """One that obeys every order; it streams BEFORE ahead of its reply to the order, and AFTER behind it.
+
+    The first orders are refused with REFUSALS.
+    """
     path = folder / "s"
     listening = socket.socket(socket.AF_UNIX)
     listening.bind(str(path))
@@ -51,10 +58,13 @@ def argusd(folder: Path, before: list[Message], after: list[Message], **noted: s
                 lines.flush()
 
             say(GREETING)
+            left = list(refusals)
             for line in lines:
                 asked = json.loads(line)
                 reply = {"re": asked["id"], "ok": True, "grant": "g"}
-                if asked["do"] == "order":
+                if asked["do"] == "order" and left:
+                    say({"re": asked["id"], "ok": False, "why": left.pop(0), "say": "not now"})
+                elif asked["do"] == "order":
                     say(*before, reply | noted, *after)
                 else:
                     say(reply)
@@ -85,6 +95,41 @@ def ordered(
 def test_a_motion_that_is_done(ordered: Any, words: list[str], own: int) -> None:
     after = [operator(own), status(1.1, "TURNING"), status(1.2, "IDLE")]
     assert ordered(words, [], after) == (EXIT_OK, "")
+
+
+@pytest.mark.parametrize(
+    ("refusals", "code"),
+    [(["checking"], EXIT_OK), (["checking"] * 3, EXIT_OK), (["refused"], EXIT_REFUSED)],
+)
+def test_stop_and_turn_waits_for_the_check_between(
+    refusals: list[str], code: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """What is refused because the sonars are checked is ordered again; whether it passes is in the refusal."""
+    after = [operator(TURN), status(1.1, "CHECKING"), status(1.2, "IDLE")]
+    place = argusd(tmp_path, [], after, refusals=refusals)
+    assert main(["--socket", place, "turn", "40", "--force"]) == code
+    _, err = capsys.readouterr()
+    assert err == ("" if code == EXIT_OK else "argusctl: not now (refused)\n")
+
+
+def test_a_live_robot_waits_for_the_check_too() -> None:
+    refusals = ["checking", "checking", "refused"]
+    steps = Session().by_hand("turn", {"deg": 40})
+
+    def answer(step: Step) -> Step:
+        if isinstance(step, Ask) and step.do == "order":
+            return steps.throw(Refused(refusals.pop(0), "not now"))
+        assert isinstance(step, Rest) or (isinstance(step, Ask) and step.do in ("watch", "take"))
+        return steps.send({"grant": "g"})
+
+    def carry_out() -> None:
+        step = next(steps)
+        while True:
+            step = answer(step)
+
+    with pytest.raises(Refused, match="not now"):
+        carry_out()
+    assert not refusals
 
 
 @pytest.mark.parametrize("by", [STOP, PASSIVE])

@@ -21,12 +21,14 @@ static bool ask(control_hands_t *self, argus_op_t op, int32_t argument, control_
         [OPERATOR_PASSIVE] = "it is passive; order active first",
         [OPERATOR_NO_ROBOT] = "there is no robot at the link",
         [OPERATOR_NO_COURSE] = "there is no course; order goto or course",
+        [OPERATOR_CHECKING] = "it turns or checks its sonars, as after each stop; order it again in a moment",
         [OPERATOR_BUSY] = "it is busy; order stop first",
         [OPERATOR_PINNED] = "the sonar is pinned; order unpin first",
         [OPERATOR_PAPER] = "profile paper cannot do this",
         [OPERATOR_REFUSED] = "the fault manager refuses it: no such sonar, or it is that already"};
     const operator_obstacle_t obstacle = operator_ask(self->op, op, argument, self->now_ms);
-    return obstacle == OPERATOR_FREE || control_refuse(answer, "refused", "%s", words[obstacle]);
+    const char *const why = obstacle == OPERATOR_CHECKING ? "checking" : "refused";
+    return obstacle == OPERATOR_FREE || control_refuse(answer, why, "%s", words[obstacle]);
 }
 
 void control_let_go(control_hands_t *self) {

@@ -69,6 +69,9 @@ static operator_obstacle_t obstacle_to_motion(const argus_status_t *status, argu
     if (op == ARGUS_OP_GO) {
         return status->waypoints == 0 ? OPERATOR_NO_COURSE : OPERATOR_FREE;
     }
+    if (status->mode == ARGUS_MODE_CHECKING) {
+        return OPERATOR_CHECKING;
+    }
     return status->mode != ARGUS_MODE_IDLE ? OPERATOR_BUSY : OPERATOR_FREE;
 }
 
@@ -104,6 +107,8 @@ static const char *words_of(operator_obstacle_t obstacle) {
                                         [OPERATOR_PASSIVE] = "not while passive; p makes it active",
                                         [OPERATOR_NO_ROBOT] = "not without a robot",
                                         [OPERATOR_NO_COURSE] = "there is no course",
+                                        [OPERATOR_CHECKING] =
+                                            "it turns or checks its sonars; again in a moment",
                                         [OPERATOR_BUSY] = "not while it is busy; space stops it",
                                         [OPERATOR_PINNED] = "it is pinned; k ends that",
                                         [OPERATOR_PAPER] = "not with profile paper",

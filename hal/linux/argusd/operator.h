@@ -29,6 +29,7 @@ typedef enum {
     OPERATOR_PASSIVE,
     OPERATOR_NO_ROBOT,
     OPERATOR_NO_COURSE,
+    OPERATOR_CHECKING, // as after each stop and turn: it passes
     OPERATOR_BUSY,
     OPERATOR_PINNED,
     OPERATOR_PAPER,

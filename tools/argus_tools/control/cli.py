@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from argus_tools.control.client import DEFAULT_PLACE, Client, ControlError, Message, Refused, read_token
-from argus_tools.control.motion import BY_HAND, CHECK_S, MOTION_S, Motion
+from argus_tools.control.motion import BY_HAND, MOTION_S, RETRY_S, Motion, Patience
 from argus_tools.control.words import event_line, evidence_line, readings_line, status_text
 from hil_sim.arguments import Parser, whole
 from hil_sim.faults.kinds import SONAR_KINDS
@@ -156,15 +156,14 @@ def _move(client: Client, order: str, members: Message) -> None:
 
 def _order_once_checked(client: Client, name: str, members: Message) -> None:
     """Order a motion; a check of the sonars, as after each stop, is waited for."""
-    until = time.monotonic() + CHECK_S
+    patience = Patience()
     while True:
         try:
             client.order(name, **members)
-        except Refused:
-            mode = client.request("status").get("state", {}).get("mode")
-            if mode != "CHECKING" or time.monotonic() > until:
+        except Refused as refusal:
+            if not patience.bears(refusal):
                 raise
-            time.sleep(0.1)
+            time.sleep(RETRY_S)
         else:
             return
 

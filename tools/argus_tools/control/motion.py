@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import time
 from typing import Final
 
 from argus_tools.control.client import Message, Refused
@@ -15,6 +16,18 @@ STOPPING: Final = (1, 6)
 MOTION_S: Final = 60.0
 CHECK_S: Final = 10.0
 """A check of the sonars, as after each stop, is waited for so long."""
+RETRY_S: Final = 0.1
+
+
+class Patience:
+    """With a robot that checks its sonars, as after each stop: it refuses to move until that is over."""
+
+    def __init__(self) -> None:
+        self._until = time.monotonic() + CHECK_S
+
+    def bears(self, refusal: Refused) -> bool:
+        """Tell whether the order is worth another try."""
+        return refusal.why == "checking" and time.monotonic() < self._until
 
 
 class Motion:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import Any, Final, TypeVar
 
 from argus_tools.control.client import Message, Refused
-from argus_tools.control.motion import CHECK_S, MOTION_S, Course, Motion
+from argus_tools.control.motion import MOTION_S, RETRY_S, Course, Motion, Patience
 from argus_tools.control.values import RobotState, state_of
 
 PERIOD_MS: Final = 200
@@ -148,14 +148,13 @@ class Session:
 
     def _order_once_checked(self, order: str, members: Message) -> Steps[None]:
         """Order a motion; a check of the sonars, as after each stop, is waited for."""
-        until = time.monotonic() + CHECK_S
+        patience = Patience()
         while True:
             try:
                 yield from self.order(order, members)
-            except Refused:
-                state = yield from self.state()
-                if state.mode != "CHECKING" or time.monotonic() > until:
+            except Refused as refusal:
+                if not patience.bears(refusal):
                     raise
-                yield Rest(0.1)
+                yield Rest(RETRY_S)
             else:
                 return

@@ -155,6 +155,21 @@ void test_a_turn_that_is_over_leaves_nothing_to_stop(void) {
     TEST_ASSERT_TRUE(robot_heading_deg(&bench_robot) > 15);
 }
 
+// stop && turn: what is asked meanwhile is refused with a word of its own, by which a client knows that it
+// passes.
+void test_after_a_stop_a_motion_is_refused_only_until_the_sonars_are_checked(void) {
+    bench_expect(&a, "{\"do\":\"take\"}", "\"ok\":true");
+    expect_order(&a, 1, "\"goto\",\"x_mm\":2000,\"y_mm\":0", "\"ok\":true");
+    TEST_ASSERT_TRUE(moves_within(8000));
+    expect_order(&a, 2, "\"turn\",\"deg\":20", "\"why\":\"refused\",\"say\":\"it is busy; order stop first");
+    expect_order(&a, 3, "\"stop\"", "\"ok\":true");
+    expect_order(&a, 4, "\"turn\",\"deg\":20", "\"why\":\"checking\"");
+    expect_order(&a, 5, "\"step\",\"way\":\"back\"", "\"why\":\"checking\"");
+    bench_run(5000);
+    expect_order(&a, 6, "\"turn\",\"deg\":20", "\"ok\":true");
+    expect_order(&a, 7, "\"turn\",\"deg\":20", "\"why\":\"checking\"");
+}
+
 void test_a_goal_nearer_than_the_robot_is_long_gets_a_note(void) {
     static const char near[] = "\"ok\":true,\"say\":\"the goal is within 500 mm of the robot";
     bench_expect(&a, "{\"do\":\"take\"}", "\"ok\":true");
