@@ -6,27 +6,43 @@ from __future__ import annotations
 import argparse
 import re
 import sys
-from collections.abc import Callable, Iterator
-from typing import Any, Final, NoReturn
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from typing import IO, Any, Final, NoReturn
 
 EXIT_USAGE: Final = 2
 # So many letters more than an option has are a typing error.
 _TYPO_MOST: Final = 2
+_NEAR: Final = 0.65
 _NEGATIVE: Final = re.compile(r"-\.?\d")
 _UNKNOWN: Final = re.compile(r"unrecognized arguments: (?:.* )?(--?[^\s=]+)")
 _NO_CHOICE: Final = re.compile(r"invalid choice: '([^']*)' \(choose from (.*)\)")
 
 
-def meant(word: str, known: Iterator[str] | list[str]) -> str:
+def meant(word: str, known: Collection[str]) -> str:
     """Return a question for the word that was likely meant, empty when none is near.
 
-    >>> meant("--fualt", ["--fault", "--tcp"]), meant("--zzz", ["--fault"])
-    ('; did you mean --fault?', '')
+    >>> meant("--fualt", ["--fault", "--tcp"]), meant("--zzz", ["--fault"]), meant("p3xd", ["p3dx-sh", "p3at-sh"])
+    ('; did you mean --fault?', '', '; did you mean p3dx-sh?')
     """
     import difflib
 
-    near = difflib.get_close_matches(word, list(known), 1)
-    return f"; did you mean {near[0]}?" if near else ""
+    heads = {one.partition("-")[0]: one for one in known if not one.startswith("-")}
+    names = heads | {one: one for one in known}
+    near = difflib.get_close_matches(word, names, 1, _NEAR)
+    return f"; did you mean {names[near[0]]}?" if near else ""
+
+
+def offer(word: str, known: Iterable[str], more: str = "") -> str:
+    """Return what follows "no such X 'WORD'": the one that was likely meant, and all there are.
+
+    >>> offer("ofice", ["lab", "office"]), offer("zzz", ["lab", "office"], "a file")
+    ('; did you mean office? name one of lab, office', '; name one of lab, office, or a file')
+    """
+    names = list(known)
+    if not names:
+        return "; there is none"
+    words = f"name one of {', '.join(names)}{more and f', or {more}'}"
+    return f"{meant(word, names) or ';'} {words}"
 
 
 def _parted(word: str, known: list[str]) -> str:
@@ -56,6 +72,8 @@ class Parser(argparse.ArgumentParser):
         super().__init__(*arguments, **named)
         self._negative_number_matcher = _NEGATIVE
         self._given: list[str] = []
+        self.elsewhere: Sequence[str] = ()
+        """Words that begin another command line."""
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
         """Parse, and keep what was given for the words of an error."""
@@ -69,6 +87,11 @@ class Parser(argparse.ArgumentParser):
         odd = next((word for word in given if not any(option.startswith(word) for option in known)), "")
         return meant(odd, known) if odd else ""
 
+    def _print_message(self, message: str, file: IO[str] | None = None) -> None:
+        """Print; an output that takes nothing is no matter to argparse, but to `hil_sim.output.guarded`."""
+        if message and file is not None:
+            file.write(message)
+
     def error(self, message: str) -> NoReturn:
         """Print the line and leave with code 2."""
         if "required" in message:
@@ -76,6 +99,8 @@ class Parser(argparse.ArgumentParser):
         if unknown := _UNKNOWN.match(message):
             known = list(_options(self))
             message += _parted(unknown[1], known) or meant(unknown[1], known)
+        elif message.startswith("unrecognized") and self._given:
+            message += meant(self._given[0], self.elsewhere)
         if wrong := _NO_CHOICE.search(message):
             message += meant(wrong[1], re.findall(r"[^\s',]+", wrong[2]))
         message += "" if message.endswith("?") else ";"

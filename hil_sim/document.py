@@ -10,6 +10,7 @@ from typing import Any, Final, NoReturn, TypeVar
 
 import yaml
 
+from hil_sim.arguments import offer
 from hil_sim.errors import SimError
 
 T = TypeVar("T")
@@ -40,7 +41,7 @@ class Item:
             self.fail(f"expected a mapping with the keys {', '.join(names)}")
         for key, item in self.value.items():
             if key not in names:
-                item.fail(f"unknown key '{_shown(key)}'; known here: {', '.join(names)}")
+                item.fail(f"unknown key '{_shown(key)}'{offer(_shown(key), names)}")
         return dict(self.value)
 
     def named(self) -> dict[str, Item]:

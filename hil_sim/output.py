@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import errno
 import os
+import signal
 import sys
 from collections.abc import Callable
 from typing import Final
@@ -13,6 +14,9 @@ from typing import Final
 _WRITING: Final = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EBADF)
 
 _STDOUT: Final = 1
+
+EXIT_UNREAD: Final = 128 + signal.SIGPIPE
+"""As a shell has it, for programs whose work is not done when nobody reads on."""
 
 
 def is_of_output(error: OSError) -> bool:

@@ -6,6 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "hal/meant.h"
+
 #define FORMS_MAX 256
 
 static const hal_scheme_t *const table[] = {
@@ -72,14 +74,22 @@ static const hal_scheme_t *scheme_of(const char *text) {
 
 static bool refuse_unknown(const char *text, char *message, size_t capacity) {
     char forms[FORMS_MAX];
+    char question[HAL_MEANT_MAX];
+    hal_meant_t meant;
     for (size_t i = 0; hal_scheme_at(i) != NULL; i++) {
         if (begins(text, table[i]->bare)) {
             return hal_link_refuse(message, capacity, "link '%s': the scheme is missing; write %s:%s", text,
                                    table[i]->word, text);
         }
     }
+    hal_meant_begin(&meant, text, strcspn(text, ":"));
+    for (size_t i = 0; hal_scheme_at(i) != NULL; i++) {
+        hal_meant_weigh(&meant, table[i]->word, strlen(table[i]->word));
+    }
+    hal_meant_ask(&meant, "", question, sizeof question);
     hal_scheme_forms(forms, sizeof forms);
-    return hal_link_refuse(message, capacity, "link '%s': unknown scheme; write %s", text, forms);
+    return hal_link_refuse(message, capacity, "link '%s': unknown scheme%s write %s", text,
+                           question[0] == '\0' ? ";" : question, forms);
 }
 
 bool hal_link_spec_parse(hal_link_spec_t *spec, const char *text, char *message, size_t capacity) {

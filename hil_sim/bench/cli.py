@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final
 
+from hil_sim.arguments import offer
 from hil_sim.bench import cli_passive, journey_cli, lasers, plan, pool, quick
 from hil_sim.bench.arguments import (
     EXIT_FAILED,
@@ -211,7 +212,12 @@ def main(argv: Sequence[str]) -> int:
         if argv and argv[0] in ("-h", "--help"):
             print(f"usage: argus-sim bench {{{','.join(names)}}} ...; see {PROG} --help")
             return 0
-        say(f"bench: name one of {', '.join(names)}; see {PROG} --help")
+        which = (
+            f"no bench '{argv[0]}'{offer(argv[0], names)}"
+            if argv
+            else f"bench: name one of {', '.join(names)}"
+        )
+        say(f"{which}; see {PROG} --help")
         return EXIT_USAGE
     try:
         return names[argv[0]](argv[1:])

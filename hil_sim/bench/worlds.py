@@ -13,6 +13,7 @@ from typing import Any, Final
 import numpy as np
 import yaml
 
+from hil_sim.arguments import offer
 from hil_sim.bench.course import ROOM_MM, SWING_MM, Field, make_field
 from hil_sim.errors import SimError
 from hil_sim.world.files import load_yaml
@@ -171,7 +172,7 @@ def make_world(name: str, key: tuple[int, ...], folder: Path) -> tuple[World, Fi
     Raises SimError when the name is unknown. A plan without room to drive in is thrown away for the next one.
     """
     if name not in _MAKERS:
-        raise SimError(f"no generated world '{name}'; name one of {', '.join(GENERATED)}")
+        raise SimError(f"no generated world '{name}'{offer(name, GENERATED)}")
     path = folder / f"{name}-{'-'.join(map(str, key))}.yaml"
     for attempt in range(_TRIES):
         plan = _MAKERS[name](np.random.default_rng([zlib.crc32(name.encode()), *key, attempt]))

@@ -312,4 +312,5 @@ def parser() -> argparse.ArgumentParser:
         "-v", "--verbose", action="count", default=0, help="say more on standard error; -vv: every command"
     )
     add_version(rest)
+    result.elsewhere = ("bench", "experiment")
     return result

@@ -13,11 +13,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from typing import Final
 
-from hil_sim.arguments import Parser
+from hil_sim.arguments import Parser, meant
 from hil_sim.conformance.check import Check
 from hil_sim.conformance.checks import CHECKS, GROUPS
 from hil_sim.conformance.client import Client, Failed, NotApplicable, Target, parse_target
 from hil_sim.errors import SimError
+from hil_sim.output import EXIT_UNREAD, guarded
 from hil_sim.version import add_version
 
 PASS, FAIL, NOT_APPLICABLE = "pass", "fail", "not applicable"
@@ -70,7 +71,9 @@ def selected(only: Sequence[str]) -> list[Check]:
     known = {item.title for item in CHECKS} | set(GROUPS) | {item.name for item in CHECKS}
     for name in only:
         if name not in known:
-            raise SimError(f"--only {name}: no such check or group; see argus-conformance --list")
+            raise SimError(
+                f"--only {name}: no such check or group{meant(name, known)}; see argus-conformance --list"
+            )
     return [c for c in CHECKS if not only or {c.title, c.group, c.name} & set(only)]
 
 
@@ -140,6 +143,10 @@ def parser() -> argparse.ArgumentParser:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run `argus-conformance`; return its exit code."""
+    return guarded("argus-conformance", lambda: _run(argv), 2, EXIT_UNREAD)
+
+
+def _run(argv: Sequence[str] | None) -> int:
     arguments = parser().parse_args(argv)
     try:
         checks = selected(arguments.only)

@@ -12,6 +12,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
+from hil_sim.arguments import meant
 from hil_sim.core.build import build
 from hil_sim.core.functions import FUNCTIONS
 from hil_sim.errors import InputError
@@ -127,7 +128,7 @@ def settings() -> dict[str, tuple[int, int, tuple[str, ...]]]:
 def setting_value(key: str, text: str) -> int:
     """Return the number that stands for `text` in a setting; InputError says what is allowed."""
     if key not in settings():
-        raise InputError(f"{key}: no such setting; argusd --list-config lists them")
+        raise InputError(f"{key}: no such setting{meant(key, settings())}; argusd --list-config lists them")
     choices = settings()[key][2]
     if text in choices:
         return choices.index(text)

@@ -35,6 +35,7 @@ from hil_sim.demo.runner import ENDING, Recording, Run, Setup
 from hil_sim.demo.scene import Drive
 from hil_sim.errors import InputError, SimError
 from hil_sim.faults.grammar import parse_fault
+from hil_sim.output import EXIT_UNREAD, guarded, is_of_output
 from hil_sim.program import NO_ARGUSD, find_argusd
 from hil_sim.scenario.scenario import SEED_MAX, Scenario, load_scenario
 from hil_sim.world.files import load_world
@@ -328,6 +329,10 @@ def _ending_signals() -> Iterator[None]:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the demonstration; return its exit code."""
+    return guarded("demo", lambda: _main(argv), 2, EXIT_UNREAD)
+
+
+def _main(argv: Sequence[str] | None) -> int:
     arguments = parser().parse_args(argv)
     try:
         with _ending_signals():
@@ -338,11 +343,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     except (_Ended, KeyboardInterrupt) as error:
         print("demo: interrupted; the robot was stopped and both programs have ended", file=sys.stderr)
         return 128 + (error.number if isinstance(error, _Ended) else signal.SIGINT)
-    except BrokenPipeError:
-        # Nobody reads our output; the interpreter would complain once more while it closes it.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 128 + signal.SIGPIPE
     except OSError as error:
+        if isinstance(error, BrokenPipeError) or is_of_output(error):
+            raise
         print(f"demo: {error.filename}: {error.strerror}; name another folder with --out", file=sys.stderr)
         return 2
 

@@ -8,6 +8,7 @@ import re
 from collections.abc import Mapping
 from typing import Final
 
+from hil_sim.arguments import offer
 from hil_sim.errors import SimError
 from hil_sim.faults.kinds import (
     DIRECTIONS,
@@ -101,8 +102,10 @@ def parse_fault(text: str, robot: RobotTable | None = None) -> Fault:
     """
     match = _FORM.fullmatch(text.strip())
     kind = match["kind"] if match else ""
-    if match is None or kind not in _PARAMETERS:
+    if match is None:
         raise SimError(f"fault '{text}': expected KIND:TARGET@FROM with KIND one of {', '.join(_PARAMETERS)}")
+    if kind not in _PARAMETERS:
+        raise SimError(f"fault '{text}': KIND:TARGET@FROM has no kind '{kind}'{offer(kind, _PARAMETERS)}")
     if kind.startswith("link-"):
         return _link_fault(text, kind, match)
     target = match["target"]
@@ -136,8 +139,8 @@ def _parameters(text: str, kind: str, rest: str) -> dict[str, float | str | Ramp
     for part in rest.split(":")[1:]:
         name, equals, value = part.partition("=")
         if not equals or name not in known:
-            offer = ", ".join(f"{k}=" for k in known) or "none"
-            raise SimError(f"fault '{text}': '{part}' is no parameter of {kind}; it takes {offer}")
+            takes = offer(f"{name}=", [f"{k}=" for k in known])
+            raise SimError(f"fault '{text}': '{part}' is no parameter of {kind}{takes}")
         if name in values:
             raise SimError(f"fault '{text}': {name} is given twice; keep one")
         if name == "dir":
@@ -161,7 +164,7 @@ def _ramp(text: str, value: str) -> Ramp:
 
 def _direction(text: str, value: str) -> str:
     if value not in DIRECTIONS:
-        raise SimError(f"fault '{text}': dir is one of {', '.join(DIRECTIONS)}")
+        raise SimError(f"fault '{text}': no dir '{value}'{offer(value, DIRECTIONS)}")
     return value
 
 

@@ -11,6 +11,7 @@ from typing import Any, Final
 
 import yaml
 
+from hil_sim.arguments import offer
 from hil_sim.document import Item, read_document
 from hil_sim.errors import SimError
 from hil_sim.faults.grammar import parse_fault
@@ -152,9 +153,8 @@ def _file_of(path: str | Path) -> Path:
     if file.suffix != "" or _exists(file):
         return file
     if str(path) not in scenario_names():
-        raise SimError(
-            f"no scenario {str(path)[:60]!r}; name one of {', '.join(scenario_names())}, or a file ending in .yaml"
-        )
+        name = str(path)[:60]
+        raise SimError(f"no scenario {name!r}{offer(name, scenario_names(), 'a file ending in .yaml')}")
     return SCENARIO_DIR / f"{path}.yaml"
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from typing import Final
 
+from hil_sim.arguments import offer
 from hil_sim.errors import SimError
 from hil_sim.server.mobilesim import MobileSimServer
 from hil_sim.server.server import ArcosServer
@@ -15,5 +16,5 @@ QUIRKS: Final[dict[str, type[ArcosServer]]] = {"robot": ArcosServer, "mobilesim"
 def server_kind(quirks: str) -> type[ArcosServer]:
     """Return the server with these habits; SimError for habits that there are not."""
     if quirks not in QUIRKS:
-        raise SimError(f"no quirks '{quirks}'; name one of {', '.join(QUIRKS)}")
+        raise SimError(f"no quirks '{quirks}'{offer(quirks, QUIRKS)}")
     return QUIRKS[quirks]

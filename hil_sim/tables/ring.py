@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 import re
 import tomllib
@@ -11,6 +10,7 @@ from collections import Counter
 from pathlib import Path
 from typing import Any, Final
 
+from hil_sim.arguments import offer
 from hil_sim.core.library import Ring
 from hil_sim.errors import SimError
 from hil_sim.tables import load, robots
@@ -106,8 +106,7 @@ def _parsed(path: Path, name: str, texts: dict[str, str]) -> dict[str, Any]:
     if texts and not file.exists():
         if name in robots():
             return dict(load(f"robots/{name}"))
-        known = ", ".join(robots())
-        raise SimError(f'{path}: {KEY} = "{name}": no file {file}, nor a robot; name one of {known}')
+        raise SimError(f'{path}: {KEY} = "{name}": no file {file}, nor a robot{offer(name, robots())}')
     try:
         text = file.read_text("utf-8")
         texts[name] = text
@@ -135,20 +134,17 @@ def _check_keys(table: dict[str, Any], lines: Lines) -> None:
     known = _known()
     for section, values in table.items():
         if section not in known:
-            raise SimError(f"{lines.where(section)}: [{section}]: no such section{_meant(section, known)}")
+            raise SimError(
+                f"{lines.where(section)}: [{section}]: no such section{offer(section, sorted(known))}"
+            )
         if not isinstance(values, dict):
             raise SimError(f"{lines.where('', section)}: {section}: write it as a section, [{section}]")
         for key, value in values.items():
             if key not in known[section]:
                 where = lines.where(section, key)
-                raise SimError(f"{where}: [{section}] {key}: no such key{_meant(key, known[section])}")
+                raise SimError(f"{where}: [{section}] {key}: no such key{offer(key, sorted(known[section]))}")
             if (key.endswith(_UNITS) or section == _LASER) and key != _CORNERS and not _is_whole(value):
                 raise SimError(f"{lines.where(section, key)}: [{section}] {key} must be a whole number")
-
-
-def _meant(word: str, known: Any) -> str:
-    near = difflib.get_close_matches(word, sorted(known), 1)
-    return f"; is {near[0]} meant?" if near else f"; there are {', '.join(sorted(known))}"
 
 
 def _is_whole(value: object) -> bool:
@@ -172,7 +168,7 @@ def _pose(index: int, pose: dict[str, Any], lines: Lines) -> dict[str, Any]:
 
     for key in pose:
         if key not in _POSE:
-            raise refuse(key, f"{key}: no such key{_meant(key, _POSE)}")
+            raise refuse(key, f"{key}: no such key{offer(key, _POSE)}")
     for key in _POSE_NEEDS:
         if key not in pose:
             raise refuse("", f"{key} is missing")
@@ -195,7 +191,7 @@ def _check_array(array: Any, k: int, own: list[int], lines: Lines) -> None:
         want = f"its order must have {own[0]} to {own[-1]}" if own else "it has no sonars"
         raise SimError(f"{lines.where('sonar.array', 'order', k)}: sonar.array {k}: {want}")
     for key in sorted(set(array) - set(_ARRAY)):
-        raise SimError(f"{lines.where('sonar.array', key, k)}: {key}: no such key{_meant(key, _ARRAY)}")
+        raise SimError(f"{lines.where('sonar.array', key, k)}: {key}: no such key{offer(key, _ARRAY)}")
 
 
 def _arrays(sonar: dict[str, Any], sonars: int, sectors: int, lines: Lines) -> list[dict[str, Any]]:

@@ -9,6 +9,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Final
 
+from hil_sim.arguments import offer
 from hil_sim.core.library import Ring, ring_fault
 from hil_sim.errors import SimError
 from hil_sim.tables import load, robots
@@ -110,7 +111,7 @@ def robot_table(name: str = DEFAULT_ROBOT) -> RobotTable:
     if name in _OWN:
         return _OWN[name]
     if name not in robots():
-        raise SimError(f"no robot '{name}'; name one of {', '.join(robots())}, or a file FILE.toml")
+        raise SimError(f"no robot '{name}'{offer(name, robots(), 'a file FILE.toml')}")
     return _built(load(f"robots/{name}"))
 
 

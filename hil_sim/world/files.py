@@ -8,6 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Final
 
+from hil_sim.arguments import offer
 from hil_sim.document import Item, read_document
 from hil_sim.errors import SimError
 from hil_sim.world.aria_map import load_map
@@ -37,9 +38,8 @@ def load_world(name_or_path: str) -> World:
     if path.suffix in (".yaml", ".yml"):
         return load_yaml(path)
     if name_or_path not in world_names():
-        raise SimError(
-            f"no world '{name_or_path}'; name one of {', '.join(world_names())}, or a file ending in .yaml or .map"
-        )
+        files = "a file ending in .yaml or .map"
+        raise SimError(f"no world '{name_or_path}'{offer(name_or_path, world_names(), files)}")
     return load_yaml(WORLD_DIR / f"{name_or_path}.yaml")
 
 

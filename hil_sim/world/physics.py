@@ -8,6 +8,7 @@ import math
 from dataclasses import dataclass
 from typing import Any, Final
 
+from hil_sim.arguments import offer
 from hil_sim.document import Item
 from hil_sim.errors import SimError
 
@@ -104,9 +105,8 @@ def parse_physics(text: str) -> Physics:
         elif equals and name in LIMITS:
             values[name] = _number(name, value)
         else:
-            raise SimError(
-                f"physics '{part}': name one of {', '.join(SETS)}, or NAME=VALUE with NAME one of {', '.join(LIMITS)}"
-            )
+            known = [f"{one}=" for one in LIMITS]
+            raise SimError(f"no physics '{part}'{offer(name + equals, [*SETS, *known])}")
     return Physics(**values)
 
 

@@ -67,9 +67,9 @@ def test_help_of_each_command(command: str) -> None:
     [
         ([], "required"),
         (["nonsense"], "invalid choice"),
-        (["build", "nonsense"], "there are: debug release"),
-        (["test", "--only", "nonsense"], "there are: tables release"),
-        (["test", "--quick", "--only", "hil"], "there are: tables release"),
+        (["build", "nonsense"], "name one of debug, release"),
+        (["test", "--only", "nonsense"], "name one of tables, release"),
+        (["test", "--quick", "--only", "hil"], "name one of tables, release"),
         (["test", "--nonsense"], "unrecognized arguments"),
         (["firmware", "--board", "nonsense"], "invalid choice"),
         (["firmware", "--config", "/no/such/file"], "no such file"),

@@ -58,7 +58,7 @@ def test_a_head_that_lacks_something_is_refused(tmp_path: Path, word: str) -> No
 
 
 def test_a_name_that_is_none_names_those_there_are() -> None:
-    with pytest.raises(Stop, match=r"no proof 'none'; there are: .*clock_wrap"):
+    with pytest.raises(Stop, match=r"no proof 'none'; name one of .*clock_wrap"):
         chosen_proofs(["none"], False)
     assert [proof.name for proof in chosen_proofs(["clock_wrap"], False)] == ["clock_wrap"]
     few, all_of_them = chosen_proofs([], False), chosen_proofs([], True)

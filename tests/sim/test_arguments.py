@@ -5,12 +5,21 @@ from __future__ import annotations
 
 import argparse
 import doctest
+import re
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from hil_sim import arguments
 from hil_sim.arguments import Parser
+from hil_sim.core.library import setting_value
+from hil_sim.errors import InputError, SimError
+from hil_sim.faults.grammar import parse_fault
+from hil_sim.scenario.scenario import load_scenario
+from hil_sim.tables.robot import robot_table
+from hil_sim.world.files import load_world
+from hil_sim.world.physics import parse_physics
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -71,6 +80,33 @@ def test_an_option_that_is_mistyped_where_one_must_be_given(capsys: pytest.Captu
     for given, ending in (("--smi", "did you mean --sim?"), ("--zzz", "is required;"), ("", "is required;")):
         with pytest.raises(SystemExit):
             made.parse_args(given.split())
+        assert capsys.readouterr().err.endswith(f"{ending} see prog --help\n")
+
+
+@pytest.mark.parametrize(
+    ("make", "meant"),
+    [
+        (lambda: load_world("ofice"), "office"),
+        (lambda: robot_table("p3xd"), "p3dx-sh"),
+        (lambda: parse_fault("of:3"), "off"),
+        (lambda: parse_fault("wrong:3:scal=2"), "scale="),
+        (lambda: parse_physics("rogh-day"), "rough-day"),
+        (lambda: load_scenario("bad-dya"), "bad-day"),
+        (lambda: setting_value("polcy", "fewest"), "policy"),
+    ],
+)
+def test_a_name_that_is_mistyped_is_answered_so_too(make: Callable[[], object], meant: str) -> None:
+    """Worlds, robots, faults, physics, scenarios, settings: one place asks what was meant."""
+    with pytest.raises((SimError, InputError), match=f"did you mean {re.escape(meant)}\\?"):
+        make()
+
+
+def test_words_that_begin_another_command_line(capsys: pytest.CaptureFixture[str]) -> None:
+    made = Parser(prog="prog")
+    made.elsewhere = ("bench", "experiment")
+    for given, ending in ((["benhc"], "did you mean bench?"), (["zzz"], "zzz;")):
+        with pytest.raises(SystemExit):
+            made.parse_args(given)
         assert capsys.readouterr().err.endswith(f"{ending} see prog --help\n")
 
 

@@ -177,7 +177,7 @@ def test_every_value_knows_its_line(tmp_path: Path) -> None:
     ("text", "line", "what"),
     [
         ("a: 1\na: 2\n", 2, "given twice"),
-        ("a: 1\nq: 2\n", 2, "unknown key 'q'; known here: a, b"),
+        ("a: 1\nq: 2\n", 2, "unknown key 'q'; name one of a, b"),
         ("- 1\n", 1, "expected a mapping"),
         ("", 1, "empty"),
         ("# nothing\n", 1, "empty"),

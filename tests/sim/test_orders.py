@@ -129,7 +129,7 @@ def test_slow_begins_with_what_it_has_heard() -> None:
         (b"", "is no order"),
         (b"break", "is no order"),
         (b"break off:16", "is no sonar"),
-        (b"break nonsense:3", "expected KIND"),
+        (b"break nonsense:3", "has no kind 'nonsense'"),
         (b"break link-cut@1s", "sonars only"),
         (b"break bumper:3@1s", "sonars only"),
         (b"mend 16", "no sonar 16"),

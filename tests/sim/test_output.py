@@ -6,6 +6,7 @@ from __future__ import annotations
 import json
 import os
 import resource
+import signal
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -34,6 +35,17 @@ PRINTING: Final = (
     (*LOG, "--version"),
     (*CTL, "--version"),
 )
+UNFINISHED: Final = (
+    ("hil_sim.conformance.cli", "--list"),
+    ("hil_sim.demo.__main__", "--help"),
+    ("argus_tools.monitor.cli", "--version"),
+    ("argus_tools.flash_check", "--version"),
+    ("argus_tools.foxglove_bridge", "--layout"),
+    ("argus_ros.programs", "argus-ros", "--help"),
+    ("argus_ros.programs", "argus-range-guard", "--help"),
+)
+"""Of programs whose work is not done when nobody reads on: they end as a shell has it."""
+DEV: Final = ("prove", "--list"), ("--help",), ("test", "--list")
 
 
 def run(words: tuple[str, ...], stdout: int, stdin: int = subprocess.DEVNULL) -> tuple[int, str]:
@@ -64,7 +76,7 @@ def assert_told(code: int, said: str, why: str) -> None:
     assert "Exception ignored" not in said
 
 
-@pytest.mark.parametrize("words", PRINTING, ids=lambda words: " ".join(words[:2]))
+@pytest.mark.parametrize("words", PRINTING + UNFINISHED, ids=lambda words: " ".join(words[:2]))
 def test_an_output_that_takes_nothing_is_told_in_one_line(
     words: tuple[str, ...], taking_nothing: tuple[str, int, int]
 ) -> None:
@@ -92,6 +104,30 @@ def test_a_reader_that_went_is_no_error(words: tuple[str, ...]) -> None:
         assert run(words, writer) == (0, "")
     finally:
         os.close(writer)
+
+
+@pytest.mark.parametrize("words", UNFINISHED, ids=lambda words: " ".join(words[:2]))
+def test_a_reader_that_went_before_the_work_was_done(words: tuple[str, ...]) -> None:
+    reader, writer = os.pipe()
+    os.close(reader)
+    try:
+        assert run(words, writer) == (128 + signal.SIGPIPE, "")
+    finally:
+        os.close(writer)
+
+
+@pytest.mark.parametrize("words", DEV, ids=lambda words: " ".join(words))
+@pytest.mark.parametrize("full", [True, False])
+def test_tools_dev_likewise(words: tuple[str, ...], full: bool) -> None:
+    out = "/dev/full" if full else ">(:)"
+    command = f"exec 3> {out}; sleep 0.3; exec tools/dev {' '.join(words)} >&3"
+    done = subprocess.run(
+        ["bash", "-c", command], cwd=ROOT, capture_output=True, text=True, timeout=600, check=False
+    )
+    if full:
+        assert_told(done.returncode, done.stderr, "No space left on device")
+    else:
+        assert (done.returncode, done.stderr) == (128 + signal.SIGPIPE, "")
 
 
 def test_who_prints_nothing_does_its_work_without_an_output(tmp_path: Path) -> None:

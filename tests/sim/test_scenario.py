@@ -115,7 +115,7 @@ BAD = {
     "crosstalk": ("sonar: {crosstalk: 1.5}\n", "1: 1.5 is outside 0 to 1"),
     "specular": ("sonar: {specular: 1}\n", "1: expected true or false"),
     "cone": ("sonar: {cone_deg: 0}\n", "1: 0 is outside 1 to 90"),
-    "fault": ("faults:\n  - off:3\n  - of:3\n", "3: fault 'of:3': expected KIND:TARGET@FROM"),
+    "fault": ("faults:\n  - off:3\n  - of:3\n", "3: fault 'of:3': KIND:TARGET@FROM has no kind 'of'; did"),
     "fault's value": ("faults: ['wrong:3:scale=x']\n", "1: fault 'wrong:3:scale=x': scale must be"),
     "fault no text": ("faults: [5]\n", "1: expected text"),
     "faults no list": ("faults: off:3\n", "1: expected a list"),

@@ -285,7 +285,7 @@ def test_a_bad_line_is_bad_here_too() -> None:
         ({"config": {"colour": 1}}, "colour: no such setting"),
         ({"config": {"speed_mm_s": 700}}, "driving would be unsafe"),
         ({"course": ((0.0, 0.0),) * 2000}, "does not fit the fault manager"),
-        ({"faults": ("odd:3",)}, "expected KIND:TARGET@FROM"),
+        ({"faults": ("odd:3",)}, "KIND:TARGET@FROM has no kind 'odd'"),
         ({"movers": (Person(((0.0, 0.0), (500.0, 0.0))),)}, "a solid of world demo is there"),
     ],
 )

@@ -60,7 +60,7 @@ def test_a_direction_is_kept_and_none_is_both() -> None:
     [
         (b"", {}, "is empty"),
         (b"dear diary\n" * 40, {}, "no ARCOS packet"),
-        (b"\xfa\xfb\x03\x00\x00\x00", {"form": "tape"}, "no such form; there are:"),
+        (b"\xfa\xfb\x03\x00\x00\x00", {"form": "tape"}, "no form 'tape'; name one of "),
     ],
 )
 def test_what_is_no_log_is_one_line(

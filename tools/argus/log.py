@@ -19,6 +19,7 @@ from argus_tools.log.packets import Row as LogPacket
 from argus_tools.log.packets import packets
 from argus_tools.log.summary import Summary
 
+from hil_sim.arguments import offer
 from hil_sim.core.library import setting_value
 
 __all__ = ["Diagnosis", "LogError", "LogPacket", "Said", "decode", "diagnose", "read"]
@@ -38,7 +39,7 @@ def read(
     wanted; of a raw capture what it is. port: the robot's TCP port in a capture. robot: its number on a CAN bus.
     """
     if form is not None and form not in formats():
-        raise LogError(f"{form}: no such form; there are: {' '.join(formats())}")
+        raise LogError(f"no form '{form}'{offer(form, formats())}")
     log = open_log(fspath(path), form, direction=direction, port=port, robot=robot)
     found = False
     for row in packets(iter(log), False):

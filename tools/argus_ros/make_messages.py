@@ -17,7 +17,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
-from hil_sim.arguments import Parser
+from hil_sim.arguments import EXIT_USAGE, Parser, offer
+from hil_sim.output import EXIT_UNREAD, guarded
 
 PACKAGES: Final[dict[str, tuple[dict[str, tuple[str, ...]], tuple[str, ...]]]] = {
     "tf2_msgs": ({"TFMessage": ("geometry_msgs/TransformStamped[] transforms",)}, ("geometry_msgs",)),
@@ -140,6 +141,10 @@ def make(names: Sequence[str], prefix: Path) -> None:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Make what is missing; return the exit code."""
+    return guarded("make_messages", lambda: _main(arguments), EXIT_USAGE, EXIT_UNREAD)
+
+
+def _main(arguments: Sequence[str] | None) -> int:
     parser = Parser(
         prog="python -m argus_ros.make_messages",
         description=__doc__,
@@ -151,7 +156,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("package", nargs="*", default=["tf2_msgs"], help=f"of {', '.join(PACKAGES)}")
     wanted = parser.parse_args(arguments).package
     if unknown := [name for name in wanted if name not in PACKAGES]:
-        parser.error(f"'{unknown[0]}' is none of {', '.join(PACKAGES)}")
+        parser.error(f"no package '{unknown[0]}'{offer(unknown[0], PACKAGES)}")
     if sys.prefix == sys.base_prefix:
         parser.error("run this by the Python of a virtual environment: packages are installed into it")
     names = missing(wanted)

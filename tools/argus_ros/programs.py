@@ -9,6 +9,7 @@ from typing import Final
 
 from argus_ros.parameters import ARGUS_USAGE, RANGE_GUARD_USAGE
 from hil_sim.arguments import meant
+from hil_sim.output import EXIT_UNREAD, guarded
 
 EXIT_USAGE: Final = 2
 
@@ -38,6 +39,10 @@ def _asked(usage: str, arguments: Sequence[str] | None) -> tuple[list[str], int 
 
 def argus_ros(arguments: Sequence[str] | None = None) -> int:
     """Run the node of a robot that argusd minds."""
+    return guarded("argus-ros", lambda: _argus_ros(arguments), EXIT_USAGE, EXIT_UNREAD)
+
+
+def _argus_ros(arguments: Sequence[str] | None) -> int:
     given, code = _asked(ARGUS_USAGE, arguments)
     if code is not None:
         return code
@@ -49,6 +54,10 @@ def argus_ros(arguments: Sequence[str] | None = None) -> int:
 
 def range_guard(arguments: Sequence[str] | None = None) -> int:
     """Run the node that repairs the ranges of any driver."""
+    return guarded("argus-range-guard", lambda: _range_guard(arguments), EXIT_USAGE, EXIT_UNREAD)
+
+
+def _range_guard(arguments: Sequence[str] | None) -> int:
     given, code = _asked(RANGE_GUARD_USAGE, arguments)
     if code is not None:
         return code

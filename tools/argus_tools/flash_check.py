@@ -17,7 +17,8 @@ from typing import Any, Final
 import serial
 from serial.tools import list_ports
 
-from hil_sim.arguments import Parser, whole
+from hil_sim.arguments import EXIT_USAGE, Parser, whole
+from hil_sim.output import EXIT_UNREAD, guarded
 from hil_sim.version import add_version
 
 EXIT_CHECKS, EXIT_LINE, EXIT_INTERRUPTED = 1, 3, 130
@@ -262,6 +263,10 @@ def run(args: argparse.Namespace) -> int:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit code."""
+    return guarded("argus-flash-check", lambda: _main(argv), EXIT_USAGE, EXIT_UNREAD)
+
+
+def _main(argv: Sequence[str] | None) -> int:
     args = parser().parse_args(argv)
     if args.device is None:
         parser().error(f"name the operator's UART, as /dev/ttyUSB0{here()}")

@@ -34,6 +34,7 @@ from argus_tools.foxglove import (
 from argus_tools.foxglove_front import FOXGLOVE, Front, Gate, hidden_host, is_loopback
 from hil_sim.arguments import Parser
 from hil_sim.faults.values import value_words
+from hil_sim.output import EXIT_UNREAD, guarded
 from hil_sim.version import add_version
 
 EXIT_USAGE, EXIT_LINK = 2, 3
@@ -306,6 +307,10 @@ def parser() -> argparse.ArgumentParser:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the program."""
+    return guarded("argus-foxglove", lambda: _main(arguments), EXIT_USAGE, EXIT_UNREAD)
+
+
+def _main(arguments: Sequence[str] | None) -> int:
     args = parser().parse_args(arguments)
     if args.layout:
         sys.stdout.write(layout())

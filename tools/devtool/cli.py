@@ -16,7 +16,8 @@ from devtool.linting import LINT_STAGES, format_stages
 from devtool.setup import leave_venv
 from devtool.stages import add_stage_options, staged_command
 from devtool.testing import QUICK_STAGES, SOAK_STAGES, TEST_STAGES
-from hil_sim.arguments import Parser
+from hil_sim.arguments import EXIT_USAGE, Parser
+from hil_sim.output import EXIT_UNREAD, guarded
 
 WHAT: Final = (
     "The one command of the project: sets everything up, then demonstrates, tests, builds or measures Argus."
@@ -181,6 +182,10 @@ def parse(argv: Sequence[str]) -> argparse.Namespace:
 
 def main(argv: Sequence[str]) -> int:
     """Run the command line and return its exit code."""
+    return guarded("dev", lambda: _main(argv), EXIT_USAGE, EXIT_UNREAD)
+
+
+def _main(argv: Sequence[str]) -> int:
     args = parse(argv)
     leave_venv()
     leave_at_sigterm()

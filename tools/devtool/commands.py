@@ -31,6 +31,7 @@ from devtool.base import (
 from devtool.cmake import TO_RUN, build, presets
 from devtool.setup import ensure
 from devtool.stages import STAGE_LIMIT_S, StageFailed, logged_runner, tail_of
+from hil_sim.arguments import offer
 
 CACHES: Final = (".mypy_cache", ".ruff_cache", ".pytest_cache", ".hypothesis", "dist")
 
@@ -83,7 +84,7 @@ def do_build(args: argparse.Namespace) -> int:
     """Build presets."""
     for preset in args.preset:
         if preset not in presets():
-            raise Stop(f"no preset '{preset}'; there are: {' '.join(presets())}", EXIT_USAGE)
+            raise Stop(f"no preset '{preset}'{offer(preset, presets())}", EXIT_USAGE)
     chosen = args.preset or ["release"]
     ensure(chosen)
     for preset in chosen:
@@ -173,15 +174,16 @@ def benchmarks() -> dict[str, Command]:
 
 def do_bench(args: argparse.Namespace) -> int:
     """Run the benchmarks."""
+    known = sorted({path.stem for path in (ROOT / "tests/bench").iterdir() if path.suffix in (".c", ".py")})
+    for name in args.name:
+        if name not in known:
+            raise Stop(f"no benchmark '{name}'{offer(name, known)}", EXIT_USAGE)
     ensure(["release"])
     quietly("building the benchmarks", functools.partial(build, "release"))
     programs = benchmarks()
     # That on the bus is run when it is asked for: it may have to make a guest kernel first.
     usual = ["can"] if args.can else sorted(set(programs) - {"can"})
-    wanted = [name for name in sorted(programs) if name in (args.name or usual)]
-    if not wanted:
-        raise Stop(f"no such benchmark; there are: {' '.join(sorted(programs)) or 'none'}", EXIT_USAGE)
-    for name in wanted:
+    for name in sorted(args.name or usual):
         say(f"running {name}")
         run_visibly(programs[name])
     return 0

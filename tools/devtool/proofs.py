@@ -31,6 +31,7 @@ from devtool.base import (
 )
 from devtool.stages import StageFailed, making
 from devtool.system import apt_install
+from hil_sim.arguments import offer
 
 FOLDER: Final = ROOT / "tests/proofs"
 WORK: Final = BUILD / "proofs"
@@ -142,7 +143,7 @@ def chosen_proofs(names: Sequence[str], everything: bool) -> list[Proof]:
     known = {proof.name for proof in proofs}
     for name in names:
         if name not in known:
-            raise Stop(f"no proof '{name}'; there are: {' '.join(sorted(known))}", EXIT_USAGE)
+            raise Stop(f"no proof '{name}'{offer(name, sorted(known))}", EXIT_USAGE)
     return [proof for proof in proofs if (proof.name in names if names else everything or proof.in_ci)]
 
 

@@ -33,6 +33,7 @@ from devtool.base import (
     words,
 )
 from devtool.setup import ensure
+from hil_sim.arguments import offer
 
 STAGE_LIMIT_S: Final = 5400.0
 """A guard against what hangs: many times what a stage takes, so that no busy host trips it."""
@@ -262,7 +263,7 @@ def chosen(stages: Sequence[Stage], only: Sequence[str]) -> list[Stage]:
     names = [stage.name for stage in stages]
     for name in only:
         if name not in names:
-            raise Stop(f"no stage '{name}'; there are: {' '.join(names)}", EXIT_USAGE)
+            raise Stop(f"no stage '{name}'{offer(name, names)}", EXIT_USAGE)
     return [stage for stage in stages if not only or stage.name in only]
 
 

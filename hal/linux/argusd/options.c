@@ -7,7 +7,7 @@
 
 #include "argusd.h"
 #include "course.h"
-#include "meant.h"
+#include "hal/meant.h"
 #include "text.h"
 
 enum {
@@ -315,12 +315,16 @@ static const struct {
 };
 
 static bool refuse_unknown(const char *given, const message_t *message) {
-    const char *meant = option_meant(table, given);
-    if (meant == NULL) {
-        return text_refuse(message->text, message->capacity, "unknown option %s; see argusd --help", given);
+    const char *const word = given + strspn(given, "-");
+    char question[HAL_MEANT_MAX];
+    hal_meant_t meant;
+    hal_meant_begin(&meant, word, strcspn(word, "="));
+    for (const struct option *row = table; row->name != NULL; row++) {
+        hal_meant_weigh(&meant, row->name, strlen(row->name));
     }
-    return text_refuse(message->text, message->capacity,
-                       "unknown option %s; did you mean --%s? see argusd --help", given, meant);
+    hal_meant_ask(&meant, "--", question, sizeof question);
+    return text_refuse(message->text, message->capacity, "unknown option %s%s see argusd --help", given,
+                       question[0] == '\0' ? ";" : question);
 }
 
 static bool take(options_t *options, int option, char **argv, const message_t *message) {

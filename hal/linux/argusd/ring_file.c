@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "argusd.h"
+#include "hal/meant.h"
 #include "text.h"
 
 #define LINE_MAX_BYTES 4096 // of a list over several lines, too
@@ -327,6 +328,19 @@ static bool is_other(const load_t *load, const char *key) {
     return false;
 }
 
+static bool refuse_key(load_t *load, const char *key) {
+    char question[HAL_MEANT_MAX];
+    hal_meant_t meant;
+    hal_meant_begin(&meant, key, strlen(key));
+    for (int i = 0; i < RING_FILE_FIGURES; i++) {
+        if (strcmp(figures[i].section, load->section) == 0) {
+            hal_meant_weigh(&meant, figures[i].key, strlen(figures[i].key));
+        }
+    }
+    hal_meant_ask(&meant, "", question, sizeof question);
+    return refuse(load, "[%s] %.40s: no such key%s", load->section, key, question);
+}
+
 static bool take_key(load_t *load, const char *key, char *value) {
     if (load->section[0] == '\0' && strcmp(key, "inherits") == 0) {
         return inherit(load, value);
@@ -342,7 +356,7 @@ static bool take_key(load_t *load, const char *key, char *value) {
     if (taken != 0) {
         return taken > 0;
     }
-    return is_other(load, key) || refuse(load, "[%s] %.40s: no such key", load->section, key);
+    return is_other(load, key) || refuse_key(load, key);
 }
 
 // Lines -----------------------------------------------------------------------------------------------------
@@ -372,6 +386,17 @@ static bool begin_section(load_t *load, unsigned row, const char *text) {
     return row != SECTION_POSE || begin_pose(load);
 }
 
+static bool refuse_section(load_t *load, const char *const *known, size_t count) {
+    char question[HAL_MEANT_MAX];
+    hal_meant_t meant;
+    hal_meant_begin(&meant, load->section, strlen(load->section));
+    for (size_t i = 0; i < count; i++) {
+        hal_meant_weigh(&meant, known[i], strlen(known[i]));
+    }
+    hal_meant_ask(&meant, "", question, sizeof question);
+    return refuse(load, "[%s]: no such section%s", load->section, question);
+}
+
 static bool take_head(load_t *load, const char *text) {
     static const char *const known[] = {"identity", "body",  "motion",      "odometry",
                                         "sonar",    "laser", "sonar.array", "sonar.pose"};
@@ -388,7 +413,7 @@ static bool take_head(load_t *load, const char *text) {
             return begin_section(load, i, text);
         }
     }
-    return refuse(load, "[%s]: no such section", load->section);
+    return refuse_section(load, known, sizeof known / sizeof known[0]);
 }
 
 static bool take_statement(load_t *load, char *text) {

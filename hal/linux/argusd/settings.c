@@ -8,10 +8,10 @@
 #include <string.h>
 
 #include "argusd.h"
+#include "hal/meant.h"
 #include "text.h"
 
 #define SECTION "argus"
-#define NAME_MAX_BYTES 40
 
 typedef struct {
     const char *key;
@@ -36,41 +36,21 @@ void settings_default(settings_t *self) {
     argus_config_default(&self->config);
 }
 
-// Edits that turn one name into the other, for "did you mean".
-static size_t distance(const char *from, const char *to) {
-    size_t row[NAME_MAX_BYTES + 1];
-    const size_t from_length = strlen(from);
-    const size_t to_length = strlen(to);
-    if (from_length > NAME_MAX_BYTES || to_length > NAME_MAX_BYTES) {
-        return SIZE_MAX;
+// "" where none is near.
+static void ask_for_key(const char *name, char *question, size_t capacity) {
+    hal_meant_t meant;
+    hal_meant_begin(&meant, name, strlen(name));
+    for (int i = 0; i < SETTINGS_COUNT; i++) {
+        hal_meant_weigh(&meant, rows[i].key, strlen(rows[i].key));
     }
-    for (size_t k = 0; k <= to_length; k++) {
-        row[k] = k;
-    }
-    for (size_t i = 1; i <= from_length; i++) {
-        size_t diagonal = row[0];
-        row[0] = i;
-        for (size_t k = 1; k <= to_length; k++) {
-            const size_t replaced = diagonal + (from[i - 1] == to[k - 1] ? 0 : 1);
-            const size_t shifted = (row[k] < row[k - 1] ? row[k] : row[k - 1]) + 1;
-            diagonal = row[k];
-            row[k] = replaced < shifted ? replaced : shifted;
-        }
-    }
-    return row[to_length];
+    hal_meant_ask(&meant, "", question, capacity);
 }
 
-static const char *nearest_key(const char *name) {
-    size_t best = strlen(name) / 3 + 1;
-    const char *key = NULL;
-    for (int i = 0; i < SETTINGS_COUNT; i++) {
-        const size_t edits = distance(name, rows[i].key);
-        if (edits <= best) {
-            best = edits;
-            key = rows[i].key;
-        }
-    }
-    return key;
+static void ask_for_choice(const row_t *row, const char *text, char *question, size_t capacity) {
+    hal_meant_t meant;
+    hal_meant_begin(&meant, text, strlen(text));
+    hal_meant_weigh_list(&meant, row->choices);
+    hal_meant_ask(&meant, "", question, capacity);
 }
 
 // The value of one of "a|b|c", or -1.
@@ -119,18 +99,20 @@ __attribute__((format(printf, 2, 3))) static int refuse(load_t *load, const char
 }
 
 static int refuse_unknown(load_t *load, const char *name) {
-    const char *const near = nearest_key(name);
-    if (near != NULL) {
-        return refuse(load, "unknown key '%.60s'; did you mean %s?", name, near);
-    }
-    return refuse(load, "unknown key '%.60s'; argusd --list-config lists the keys", name);
+    char question[HAL_MEANT_MAX];
+    ask_for_key(name, question, sizeof question);
+    return refuse(load, "unknown key '%.60s'%s", name,
+                  question[0] == '\0' ? "; argusd --list-config lists the keys" : question);
 }
 
 static int take_value(load_t *load, const row_t *row, const char *text) {
     int32_t value = choice(row->choices, text);
     const bool is_named = value >= 0;
     if (!is_named && is_choice(row)) {
-        return refuse(load, "%s = '%.40s': choose one of %s", row->key, text, row->choices);
+        char question[HAL_MEANT_MAX];
+        ask_for_choice(row, text, question, sizeof question);
+        return refuse(load, "%s = '%.40s'%s choose one of %s", row->key, text,
+                      question[0] == '\0' ? ":" : question, row->choices);
     }
     if (!is_named && !text_number(text, &value)) {
         return refuse(load, "%s = '%.40s': give a whole number, %d to %d %s%s", row->key, text,
@@ -237,7 +219,10 @@ bool settings_choose(settings_t *self, int row, const char *text, const char *op
                      size_t capacity) {
     const int32_t value = choice(rows[row].choices, text);
     if (value < 0) {
-        return text_refuse(message, capacity, "%s %.40s: choose one of %s", option, text, rows[row].choices);
+        char question[HAL_MEANT_MAX];
+        ask_for_choice(&rows[row], text, question, sizeof question);
+        return text_refuse(message, capacity, "%s %.40s%s choose one of %s", option, text,
+                           question[0] == '\0' ? ":" : question, rows[row].choices);
     }
     memcpy((char *)&self->config + rows[row].offset, &value, sizeof value);
     return true;

@@ -26,6 +26,7 @@ from hil_sim.arguments import EXIT_USAGE, Parser
 from hil_sim.cli.arguments import parser as sim_parser
 from hil_sim.cli.choose import scenario_of
 from hil_sim.errors import SimError
+from hil_sim.output import EXIT_UNREAD, guarded, is_of_output
 from hil_sim.version import add_version
 from hil_sim.world.files import load_world
 
@@ -278,6 +279,10 @@ def _check_together(arguments: argparse.Namespace) -> None:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run `argus-monitor`; return its exit code."""
+    return guarded("argus-monitor", lambda: _main(argv), EXIT_USAGE, EXIT_UNREAD)
+
+
+def _main(argv: Sequence[str] | None) -> int:
     arguments, words = parser().parse_known_args(sys.argv[1:] if argv is None else list(argv))
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(line_buffering=True)
@@ -300,6 +305,8 @@ def main(argv: Sequence[str] | None = None) -> int:
             raise
         why, code = "aiohttp is missing; install argus-p3dx[monitor]", EXIT_START
     except OSError as error:
+        if isinstance(error, BrokenPipeError) or is_of_output(error):
+            raise
         why, code = ": ".join(map(str, filter(None, (error.filename, error.strerror or error)))), EXIT_START
     print(f"argus-monitor: {why}", file=sys.stderr)
     return code

@@ -28,6 +28,7 @@ from argus_tools.rings.packet import identity_of
 from argus_tools.rings.packets import Pacer
 from argus_tools.rings.silence import Silence
 from hil_sim.arcos import frame
+from hil_sim.arguments import offer
 from hil_sim.tables.robot import DEFAULT_ROBOT, robot_table
 
 LINE_MOST: Final = 1 << 20
@@ -180,9 +181,8 @@ class ColumnsLog:
         names = list(dict.fromkeys(name for _, row in head for name in row))
         for meaning, name in self._options.columns:
             if name not in names:
-                raise LogError(
-                    f"{self._options.name}: --columns {meaning}={name}: no such column; there are {', '.join(names)}"
-                )
+                given = f"{self._options.name}: --columns {meaning}={name}: no such column"
+                raise LogError(given + offer(name, names))
         columns = understood(names, {name: meaning for meaning, name in self._options.columns})
         if not columns.is_ring:
             raise LogError(

@@ -161,6 +161,8 @@ void test_only_tcp_to_this_machine_stays_here(void) {
 
 void test_refusals_say_what_to_write(void) {
     refused("", "unknown scheme");
+    refused("serail:/dev/ttyS0", "unknown scheme; did you mean serial? write serial:/dev/ttyUSB0@9600");
+    refused("tpc:robot", "; did you mean tcp?");
     refused("udp:robot:1", "unknown scheme; write serial:/dev/ttyUSB0@9600, tcp:HOST:8101");
     refused("can:", "no interface is named");
     refused("can:can0,quick", "is no option");

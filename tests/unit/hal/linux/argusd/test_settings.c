@@ -100,6 +100,7 @@ void test_refusals_name_the_line(void) {
             "a.conf:1: policy = 'best': choose one of paper|fewest|least-turn|ring|adaptive");
     refused("policy = pap\n",
             "a.conf:1: policy = 'pap': choose one of paper|fewest|least-turn|ring|adaptive");
+    refused("policy = fewst\n", "a.conf:1: policy = 'fewst'; did you mean fewest? choose one of paper|");
     refused("policy =\n", "a.conf:1: policy = '': choose one of");
     refused("step_mm = 100\n\nstep_mm = 100\n", "a.conf:3: step_mm was given on line 1 already; keep one");
     refused("step_mm = 100\n  step_mm = 150\n", "a.conf:2: step_mm was given on line 1 already");
