@@ -7,7 +7,7 @@ import argparse
 import re
 import sys
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
-from typing import IO, Any, Final, NoReturn
+from typing import Any, Final, NoReturn
 
 EXIT_USAGE: Final = 2
 # So many letters more than an option has are a typing error.
@@ -87,7 +87,7 @@ class Parser(argparse.ArgumentParser):
         odd = next((word for word in given if not any(option.startswith(word) for option in known)), "")
         return meant(odd, known) if odd else ""
 
-    def _print_message(self, message: str, file: IO[str] | None = None) -> None:
+    def _print_message(self, message: str, file: Any = None) -> None:
         """Print; an output that takes nothing is no matter to argparse, but to `hil_sim.output.guarded`."""
         if message and file is not None:
             file.write(message)
