@@ -35,7 +35,7 @@ static uint16_t price(const argus_turns_t *const turns, const int k) {
 
 static void fill(table_t *const table, const argus_turns_t *const turns, const span_t *const span) {
     ARGUS_ASSERT(turns->count <= ARGUS_TURNS_MAX);
-    table->least[0] = 0;
+    ARGUS_ASSERT(table->least[0] == 0); // nothing is seen for nothing
     for (unsigned set = 1; set <= argus_turns_open(turns); set++) {
         table->least[set] = NONE;
         for (int k = span->from; k < span->to; k++) {
@@ -140,7 +140,8 @@ static void add(argus_plan_t *const plan, const argus_turns_t *const turns, cons
                 const int k) {
     ARGUS_ASSERT(plan->count <= ARGUS_ROTATIONS_MAX);
     ARGUS_ASSERT(turns->count <= ARGUS_TURNS_MAX);
-    if ((stops >> k & 1u) != 0 && plan->count < ARGUS_ROTATIONS_MAX) {
+    if ((stops >> k & 1u) != 0) {
+        ARGUS_ASSERT(plan->count < ARGUS_ROTATIONS_MAX); // each stop sees another blind bearing
         plan->rotation_deg[plan->count++] = turns->deg[k];
     }
 }

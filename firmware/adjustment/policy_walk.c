@@ -25,7 +25,8 @@ void argus_policy_walk(argus_plan_t *const plan, const argus_turns_t *const turn
     int next = next_outward(turns, 0);
     for (int tries = 0; tries < turns->count && next >= 0 && open != 0; tries++) {
         const unsigned seen = turns->sees[next] & open;
-        if (seen != 0 && plan->count < ARGUS_ROTATIONS_MAX) {
+        if (seen != 0) {
+            ARGUS_ASSERT(plan->count < ARGUS_ROTATIONS_MAX); // each rotation sees another blind bearing
             plan->rotation_deg[plan->count++] = turns->deg[next];
             open &= ~seen;
         }

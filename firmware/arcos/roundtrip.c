@@ -63,7 +63,6 @@ static void send(argus_roundtrip_t *const self, argus_outbox_t *const out, const
 static void begin(argus_roundtrip_t *const self, const argus_sip_t *const sip, const uint32_t now_ms) {
     self->begun = true;
     self->begun_ms = now_ms;
-    self->seen_ms = now_ms;
     self->newest = (uint8_t)(sip->anport % PORTS); // what it shows is none of ours
 }
 

@@ -100,7 +100,7 @@ def test_the_quick_stages_are_some_of_all() -> None:
     quick, everything = stages_of("test", "--quick"), stages_of("test")
     assert set(quick) < set(everything)
     assert not {"hil", "can", "soak", "wide"} & set(quick)
-    assert set(stages_of("soak")) - set(everything) == {"wide", "fuzz", "mcdc", "misra"}
+    assert set(stages_of("soak")) - set(everything) == {"wide", "fuzz", "mcdc", "misra", "valgrind", "reproduce"}
 
 
 @pytest.fixture

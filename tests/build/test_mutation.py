@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import argparse
 from pathlib import Path
 
 import pytest
@@ -95,3 +96,27 @@ def test_the_score_leaves_out_what_is_no_mutant(capsys: pytest.CaptureFixture[st
     assert "1 of    2 killed" in said
     assert "survived: firmware/a.c:2: a  ->  c" in said
     assert said.endswith("1 of 2 killed, 50.0 %\n")
+
+
+def test_each_mutant_that_is_explained_is_one_and_has_a_reason() -> None:
+    known = mutation.equivalent()
+    for (name, before, after), reason in known.items():
+        found = {mutation.key_of(mutant) for mutant in mutants_of(ROOT / name)}
+        assert (name, before, after) in found, f"{name}: {before} -> {after} is no mutant of it"
+        assert len(reason.split()) > 3
+
+
+def test_who_is_explained_is_not_tried(
+    file: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    mutant = next(one for one in mutants_of(file) if one.number == 9)
+    monkeypatch.setattr(mutation, "equivalent", lambda: {mutation.key_of(mutant): "for the test"})
+    monkeypatch.setattr(mutation, "chosen", lambda *_: mutants_of(file))
+    monkeypatch.setattr(mutation, "DEBUG", file.parent)
+    (file.parent / "build.ninja").touch()
+    tried = list[Mutant]()
+    monkeypatch.setattr(mutation, "fates_of", lambda mutants, *_: tried.extend(mutants) or {})
+    mutation.do_mutate(argparse.Namespace(file=[], sample=1, seed=1, jobs=1, widely=False))
+    assert mutant not in tried
+    assert len(tried) == len(mutants_of(file)) - 1
+    assert "1 more are equivalent" in capsys.readouterr().out

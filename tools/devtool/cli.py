@@ -8,7 +8,7 @@ import sys
 from collections.abc import Sequence
 from typing import Final
 
-from devtool import commands, docs, firmware, mutation, packaging, proofs
+from devtool import commands, docs, firmware, mutation, packaging, proofs, supply
 from devtool.base import Action, Add, Stop, leave_at_sigterm
 from devtool.cmake import presets
 from devtool.coverage import do_coverage
@@ -164,6 +164,7 @@ def make_parser() -> argparse.ArgumentParser:
         packaging.add_commands,
         proofs.add_commands,
         mutation.add_commands,
+        supply.add_commands,
     ):
         add_some(add)
     return parser

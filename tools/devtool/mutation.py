@@ -11,6 +11,7 @@ import random
 import re
 import shlex
 import subprocess
+import tomllib
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Final
@@ -20,6 +21,7 @@ from devtool.base import BUILD, CORES, EXIT_SETUP, EXIT_USAGE, ROOT, Add, Stop, 
 DEBUG: Final = BUILD / "debug"
 WORK: Final = BUILD / "mutation"
 UNIT: Final = ROOT / "tests/unit"
+EXPLAINED: Final = ROOT / "tests/mutants.toml"
 TEST_LIMIT_S: Final = 120.0
 TOLD_EACH: Final = 20
 """A mutant that hangs is found, too: many times what a short test takes."""
@@ -88,6 +90,17 @@ def mutants_of(file: Path) -> list[Mutant]:
                 Mutant(file, number, line, after) for after in dict.fromkeys(changed(line)) if after != line
             ]
     return found
+
+
+def equivalent() -> dict[tuple[str, str, str], str]:
+    """Return the mutants that behave as the program does, and the reason of each."""
+    rows = tomllib.loads(EXPLAINED.read_text(encoding="utf-8"))["equivalent"]
+    return {(row["file"], row["before"], row["after"]): row["reason"] for row in rows}
+
+
+def key_of(mutant: Mutant) -> tuple[str, str, str]:
+    """Return how a mutant is named in the list of those that are explained."""
+    return (shown(mutant.file), mutant.before.strip(), mutant.after.strip())
 
 
 def text_of(mutant: Mutant) -> str:
@@ -229,7 +242,12 @@ def do_mutate(args: argparse.Namespace) -> int:
     if args.sample < 0 or args.jobs < 1:
         raise Stop("--sample is 0 or more, --jobs 1 or more", EXIT_USAGE)
     mutants = chosen(args.file, args.sample, args.seed)
-    say(f"{len(mutants)} mutants, seed {args.seed}")
+    known = equivalent()
+    explained = [mutant for mutant in mutants if key_of(mutant) in known]
+    mutants = [mutant for mutant in mutants if key_of(mutant) not in known]
+    say(
+        f"{len(mutants)} mutants, seed {args.seed}; {len(explained)} more are equivalent ({shown(EXPLAINED)})"
+    )
     tell(fates_of(mutants, args.widely, args.jobs))
     return 0
 

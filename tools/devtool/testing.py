@@ -22,6 +22,7 @@ from devtool.real_time import hil_workers, run_in_real_time
 from devtool.ros import NEEDS as ROS_NEEDS
 from devtool.ros import ros_tests
 from devtool.stages import Stage, making
+from devtool.supply import reproduce_stage
 
 PYTEST: Final = (VENV / "bin/python", "-m", "pytest", "-q")
 FUZZ_RUNS: Final = 1_000_000
@@ -55,6 +56,14 @@ def python_tests(run: Run) -> None:
     build("release", run)
     build("cortex-m4", run)
     run([*PYTEST, *COMPUTING, "-m", f"not {SOAK} and not {WIDE}", *SHARED_OUT])
+
+
+VALGRIND: Final = """\
+#!/bin/sh
+exec valgrind --quiet --error-exitcode=99 --leak-check=full --errors-for-leak-kinds=definite --log-file={log} \\
+    {argusd} "$@"
+"""
+"""argusd as the tests over ptys start it: the same process, its own output untouched."""
 
 
 def soak_tests(run: Run) -> None:
@@ -103,6 +112,19 @@ def hil_tests(run: Run) -> str | None:
     build("release", run)
     pytest: Command = [*PYTEST, "--dist", "load"]
     return run_in_real_time(run, pytest, ["tests/hil"], hil_workers(), BUILD / "hil/host-late.json")
+
+
+def valgrind_tests(run: Run) -> None:
+    """Let argusd drive over a pty and TCP under valgrind: an error, or a byte lost, is its exit code."""
+    build("release", run)
+    folder = BUILD / "valgrind"
+    folder.mkdir(exist_ok=True)
+    wrapper = folder / "argusd"
+    wrapper.write_text(
+        VALGRIND.format(log=folder / "%p.log", argusd=BUILD / "release/argusd"), encoding="utf-8"
+    )
+    wrapper.chmod(0o755)
+    run(["env", f"ARGUS_ARGUSD={wrapper}", *PYTEST, "tests/hil/test_start.py", "-k", "later"])
 
 
 def can_tests(run: Run) -> str | None:
@@ -173,6 +195,19 @@ SOAK_STAGES: Final = (
         "rules of MISRA C:2012 that firmware/ breaks, against the deviations of docs/misra.md",
         misra,
         needs=("cppcheck",),
+    ),
+    Stage(
+        "valgrind",
+        "argusd and an emulated robot over a pty and TCP, under valgrind",
+        valgrind_tests,
+        ("release",),
+        needs=("valgrind",),
+    ),
+    Stage(
+        "reproduce",
+        "argusd and a board's image, built in two folders of sources of two times: the same bytes",
+        reproduce_stage,
+        ("release", "mps2-an386"),
     ),
     Stage(
         "fuzz",

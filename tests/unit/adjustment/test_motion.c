@@ -236,3 +236,21 @@ void test_a_hold_commands_nothing(void) {
     TEST_ASSERT_TRUE(m.settled);
     TEST_ASSERT_EQUAL(0, out.length);
 }
+
+// From 400 ms on a robot that stands has stopped, not failed to begin.
+void test_a_move_may_be_over_after_400_ms(void) {
+    argus_motion_move(&m, &out, &k, 150, 100, now_ms);
+    for (int i = 0; i < 4; i++) {
+        TEST_ASSERT_FALSE(m.settled);
+        take(0, 0);
+    }
+    take(0, 0); // the second of them that counts
+    TEST_ASSERT_TRUE(m.settled);
+}
+
+void test_a_turn_that_may_not_be_tried_again_has_failed(void) {
+    argus_motion_turn(&m, &out, &k, 2000, now_ms);
+    m.tries = 1;
+    argus_motion_again(&m, &out, &k, false, now_ms);
+    TEST_ASSERT_TRUE(m.failed);
+}

@@ -48,3 +48,10 @@ void test_it_is_measured_again_after_three_metres(void) {
     k.odometer_mm++;
     TEST_ASSERT_TRUE(argus_trim_is_due(&wheel, &k));
 }
+
+// Exactly what comes apart in 150 ms, in radians of the track.
+void test_how_much_it_is_countered(void) {
+    k.vel_left_mm_s = k.vel_right_mm_s = 1000;
+    wheel.short_pm = 1000;
+    TEST_ASSERT_EQUAL_INT32(-(1000 * 150 * 573 / k.robot->track_mm / 100), argus_trim_cdeg(&wheel, &k));
+}

@@ -99,3 +99,17 @@ void test_where_no_port_shows_config_is_asked_for(void) {
     TEST_ASSERT_TRUE(asked > 15);
     TEST_ASSERT_INT_WITHIN(30, 100, argus_roundtrip_ms(&trip, 9000));
 }
+
+// Seven are under way and none shows: the last one goes again, each second, and no other.
+void test_what_does_not_show_is_not_sent_on_and_on(void) {
+    int sent = 0;
+    for (uint32_t now_ms = 1000; now_ms < 1700; now_ms += 100) {
+        sent += sip(now_ms, 0) >= 0 ? 1 : 0;
+    }
+    TEST_ASSERT_EQUAL(7, sent);
+    for (uint32_t now_ms = 1700; now_ms < 2600; now_ms += 100) {
+        TEST_ASSERT_EQUAL(-1, sip(now_ms, 0));
+    }
+    TEST_ASSERT_EQUAL(7, sip(2600, 0));
+    TEST_ASSERT_EQUAL(-1, sip(2700, 0));
+}

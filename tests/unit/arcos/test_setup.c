@@ -109,3 +109,16 @@ void test_wheels_at_the_speed_confirm_setv(void) {
     sip.vel_left_mm_s = sip.vel_right_mm_s = 290;
     TEST_ASSERT_EQUAL_INT(0, again(ARCOS_CMD_SETV, 20000));
 }
+
+void test_an_order_is_doubted_once_it_is_done_and_dropped_again(void) {
+    argus_setup_doubt(&setup, ARGUS_SETUP_ENABLE); // it was never sent
+    TEST_ASSERT_FALSE(argus_setup_is_open(&setup, ARGUS_SETUP_ENABLE));
+    send(ARCOS_CMD_ENABLE, 1);
+    sip.flags |= ARCOS_FLAG_MOTORS;
+    again(ARCOS_CMD_ENABLE, 300);
+    TEST_ASSERT_FALSE(argus_setup_is_open(&setup, ARGUS_SETUP_ENABLE));
+    argus_setup_doubt(&setup, ARGUS_SETUP_ENABLE);
+    TEST_ASSERT_TRUE(argus_setup_is_open(&setup, ARGUS_SETUP_ENABLE));
+    argus_setup_drop(&setup, ARGUS_SETUP_ENABLE);
+    TEST_ASSERT_FALSE(argus_setup_is_open(&setup, ARGUS_SETUP_ENABLE));
+}

@@ -137,3 +137,10 @@ void test_only_the_six_are_judged(void) {
     TEST_ASSERT_EQUAL(ARGUS_NO_VERDICT, judge(7));
     TEST_ASSERT_EQUAL(ARGUS_NO_VERDICT, judge(12));
 }
+
+void test_no_verdict_has_no_difference(void) {
+    argus_knowledge_init(&k);
+    int32_t difference_mm = 4711;
+    TEST_ASSERT_EQUAL(ARGUS_NO_VERDICT, argus_disparity(&k, 3, &difference_mm)); // none has reported
+    TEST_ASSERT_EQUAL_INT32(0, difference_mm);
+}

@@ -269,3 +269,10 @@ void test_the_other_end_is_the_robot_turned_by_180_degrees(void) {
     TEST_ASSERT_TRUE(ARGUS_SONARS > 8 ? ends >= 3 : ends == 0);
     TEST_ASSERT_NULL(argus_robot_other_end(argus_robot_unknown()));
 }
+
+// Only the arrays of those that face forward fire in an order of ours, whichever end that is.
+void test_who_is_polled(void) {
+    const argus_robot_t *const robot = argus_robot_default();
+    TEST_ASSERT_EQUAL_HEX32(0x00FF, argus_robot_polled(robot));
+    TEST_ASSERT_EQUAL_HEX32(0xFF00, argus_robot_polled(argus_robot_other_end(robot)));
+}

@@ -289,3 +289,18 @@ void test_random_rooms(void) {
     snprintf(text, sizeof text, "%d of 400 found", found);
     TEST_ASSERT_TRUE_MESSAGE(found > 350, text);
 }
+
+// What a wide robot, which may turn there, asks for beside the way is more than what a narrow one does.
+void test_a_narrow_leg_is_free_where_a_wide_one_is_not(void) {
+    int only_narrow = 0;
+    for (int beside_mm = 0; beside_mm <= 700; beside_mm += 20) {
+        setUp();
+        wall(300, beside_mm, 1200, beside_mm);
+        const argus_leg_t narrow = {.to = {1500, 0}, .narrow = true};
+        const argus_leg_t wide = {.to = {1500, 0}, .narrow = false};
+        const bool lets_narrow = argus_way_is_free(&ground, &narrow);
+        TEST_ASSERT_TRUE(lets_narrow || !argus_way_is_free(&ground, &wide));
+        only_narrow += lets_narrow && !argus_way_is_free(&ground, &wide) ? 1 : 0;
+    }
+    TEST_ASSERT_GREATER_THAN(0, only_narrow);
+}
