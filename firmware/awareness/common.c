@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "awareness/numbers.h"
+#include "awareness/odds.h"
 #include "knowledge/angle.h"
 
 void argus_common_init(argus_common_t *const self) {
@@ -88,6 +89,15 @@ static argus_mask_t lost_at_once(const argus_common_t *const self, const argus_k
     return (argus_mask_t)lost;
 }
 
+// What it tells against an array that one of its sonars is silent where something stands: as much less as
+// that one is silent there more often than is taken for granted of each.
+static int32_t piece_of(const argus_evidence_t *const evidence, const int sonar) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    const int32_t often = argus_ln(argus_max(1, argus_odds_deaf_permille(evidence, sonar)));
+    return argus_between(0, ARGUS_DARK_PIECE_CNAT,
+                         ARGUS_DARK_PIECE_CNAT + argus_ln(1000 / ARGUS_DEAF_EARLIER) - often);
+}
+
 // What speaks against the array as a whole, and whose echoes.
 static void add(argus_dark_t *const dark, const int32_t nats, const argus_mask_t by) {
     dark->nats = (int16_t)argus_min(dark->nats + nats, ARGUS_CEILING);
@@ -99,34 +109,58 @@ static bool hears_within(const argus_knowledge_t *const knowledge, const int son
     return argus_trusted(knowledge, sonar) && knowledge->sonar[sonar].reading_mm <= mm;
 }
 
+static bool is_left(const argus_knowledge_t *const knowledge, const int sonar) {
+    return argus_robot_pose(knowledge->robot, sonar).y_mm > 0;
+}
+
+static unsigned abeam_of(const argus_knowledge_t *const knowledge) {
+    return argus_robot_flank(knowledge->robot) | (unsigned)argus_robot_rear_flank(knowledge->robot);
+}
+
+// What a wall on this side tells against it: as the one of its own that hears best there would miss it.
+static int32_t piece_beside(const argus_evidence_t *const evidence, const argus_knowledge_t *const knowledge,
+                            const argus_dark_t *const dark, const bool left) {
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
+    const unsigned own = dark->sonars & abeam_of(knowledge);
+    int32_t most = -1;
+    for (int i = 0; i < knowledge->sonars; i++) {
+        if ((own >> i & 1u) != 0 && is_left(knowledge, i) == left) {
+            most = argus_max(most, piece_of(evidence, i));
+        }
+    }
+    return most < 0 ? ARGUS_DARK_PIECE_CNAT : most;
+}
+
 // One abeam, of another array, that is relied on: the way since it was heard last counts while it hears
 // something near.
-static void pass(argus_dark_t *const dark, const argus_knowledge_t *const knowledge, const int sonar) {
+static void pass(argus_dark_t *const dark, const argus_evidence_t *const evidence,
+                 const argus_knowledge_t *const knowledge, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    argus_passed_t *const passed = &dark->passed[argus_robot_pose(knowledge->robot, sonar).y_mm > 0];
+    const bool left = is_left(knowledge, sonar);
+    const int32_t piece = piece_beside(evidence, knowledge, dark, left);
+    argus_passed_t *const passed = &dark->passed[left];
     const int32_t way_mm = (int32_t)(knowledge->odometer_mm - passed->odometer_mm);
     const bool apart = way_mm > ARGUS_DARK_APART_MM;
     const bool near = hears_within(knowledge, sonar, ARGUS_NEAR_MM);
     const bool lasting = hears_within(knowledge, sonar, ARGUS_LASTING_MM);
-    passed->mm += passed->near && near && !apart ? way_mm : 0;
+    passed->mm += passed->near && near && !apart ? way_mm * piece / ARGUS_DARK_PIECE_CNAT : 0;
     passed->stretch_mm += passed->lasting && lasting && !apart ? way_mm : 0;
     passed->near = near;
     passed->lasting = lasting;
     passed->odometer_mm = knowledge->odometer_mm;
     if (passed->stretch_mm >= ARGUS_STRETCH_MM) {
         passed->stretch_mm = 0;
-        add(dark, ARGUS_DARK_PIECE_CNAT, (argus_mask_t)(1u << sonar));
+        add(dark, piece, (argus_mask_t)(1u << sonar));
     }
 }
 
-static void pass_all(argus_dark_t *const dark, const argus_knowledge_t *const knowledge) {
+static void pass_all(argus_dark_t *const dark, const argus_evidence_t *const evidence,
+                     const argus_knowledge_t *const knowledge) {
     ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
-    const argus_robot_t *const robot = knowledge->robot;
-    const unsigned abeam = argus_robot_flank(robot) | argus_robot_rear_flank(robot);
-    const unsigned others = abeam & ~(unsigned)dark->sonars & knowledge->fresh;
+    const unsigned others = abeam_of(knowledge) & ~(unsigned)dark->sonars & knowledge->fresh;
     for (int i = 0; i < knowledge->sonars; i++) {
         if ((others >> i & 1u) != 0) {
-            pass(dark, knowledge, i);
+            pass(dark, evidence, knowledge, i);
         }
     }
 }
@@ -169,33 +203,67 @@ static bool has_lost(const argus_common_t *const self, const argus_knowledge_t *
            left_mm <= ARGUS_LASTING_MM && left_mm >= ARGUS_DARK_AHEAD_LEAST_MM;
 }
 
-static void count_lost(argus_common_t *const self, const argus_knowledge_t *const knowledge,
-                       argus_dark_t *const dark) {
+static void count_lost(argus_common_t *const self, const argus_evidence_t *const evidence,
+                       const argus_knowledge_t *const knowledge, argus_dark_t *const dark) {
     ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     const unsigned open = dark->sonars & ~(unsigned)dark->lost;
     for (int i = 0; i < knowledge->sonars; i++) {
         if ((open >> i & 1u) != 0 && has_lost(self, knowledge, i)) {
             dark->lost |= (argus_mask_t)(1u << i);
-            add(dark, ARGUS_DARK_PIECE_CNAT, 0);
+            add(dark, piece_of(evidence, i), 0);
         }
     }
 }
 
-// True: since now.
-static bool comes_to_doubt(argus_dark_t *const dark) {
+// What those that stopped hearing at once tell together is as much as so many that hear as is taken for
+// granted.
+static bool tells_at_once(const argus_common_t *const self, const argus_evidence_t *const evidence,
+                          const argus_knowledge_t *const knowledge, const argus_mask_t sonars) {
+    ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
+    const unsigned lost = lost_at_once(self, knowledge, sonars);
+    int32_t nats = 0;
+    for (int i = 0; i < knowledge->sonars; i++) {
+        nats += (lost >> i & 1u) != 0 ? piece_of(evidence, i) : 0;
+    }
+    return nats >= ARGUS_DARK_AT_ONCE_CNAT;
+}
+
+// True: since now. What ended at once, and tells too little for a proof, is reason for doubt.
+static bool comes_to_doubt(argus_dark_t *const dark, const int run) {
     const bool before = dark->doubted;
-    dark->doubted = before || dark->nats >= ARGUS_DARK_DOUBT_CNAT;
+    const bool ended = dark->at_once && !dark->tells && run >= ARGUS_DARK_RUN;
+    dark->doubted = before || ended || dark->nats >= ARGUS_DARK_DOUBT_CNAT;
     return dark->doubted && !before && !dark->at_once && !dark->proven;
 }
 
-// `hear`: so many of the array go on hearing.
-static bool is_proven(const argus_dark_t *const dark, const int run, const int hear) {
-    const bool disputed = dark->nats >= ARGUS_DARK_PROOF_CNAT && argus_count_bits(dark->by) >= ARGUS_PARTNERS;
-    const int least = hear <= 1 ? ARGUS_DARK_RUN : ARGUS_DARK_RUN_OF_SOME;
-    return (dark->at_once && run >= least) || (hear == 0 && has_passed(dark)) || disputed;
+// What those who hear badly miss ends with the surface: for them the robot must have gone on as well.
+static bool has_lasted(const argus_dark_t *const dark, const argus_knowledge_t *const knowledge,
+                       const int run, const int hear) {
+    const uint32_t way_mm = knowledge->odometer_mm - dark->odometer_mm;
+    if (!dark->tells) {
+        return run >= ARGUS_DARK_RUN_OF_SOME && way_mm >= ARGUS_STRETCH_MM;
+    }
+    return run >= (hear <= 1 ? ARGUS_DARK_RUN : ARGUS_DARK_RUN_OF_SOME);
 }
 
-static void look_at(argus_common_t *const self, const argus_knowledge_t *const knowledge, const int array) {
+// `hear`: so many of the array go on hearing.
+static bool is_proven(const argus_dark_t *const dark, const argus_knowledge_t *const knowledge, const int run,
+                      const int hear) {
+    const bool disputed = dark->nats >= ARGUS_DARK_PROOF_CNAT && argus_count_bits(dark->by) >= ARGUS_PARTNERS;
+    return (dark->at_once && has_lasted(dark, knowledge, run, hear)) || (hear == 0 && has_passed(dark)) ||
+           disputed;
+}
+
+static void begin(const argus_common_t *const self, const argus_evidence_t *const evidence,
+                  const argus_knowledge_t *const knowledge, argus_dark_t *const dark,
+                  const argus_mask_t sonars) {
+    dark->since_ms = knowledge->sip_ms - since_last_ms(self, knowledge, sonars);
+    dark->odometer_mm = knowledge->odometer_mm;
+    dark->tells = tells_at_once(self, evidence, knowledge, sonars);
+}
+
+static void look_at(argus_common_t *const self, const argus_evidence_t *const evidence,
+                    const argus_knowledge_t *const knowledge, const int array) {
     argus_dark_t *const dark = &self->of[array];
     const argus_mask_t all = argus_robot_array(knowledge->robot, array);
     const argus_mask_t its = (argus_mask_t)(all & ~(unsigned)argus_robot_sectors(knowledge->robot));
@@ -212,17 +280,19 @@ static void look_at(argus_common_t *const self, const argus_knowledge_t *const k
         return;
     }
     if (!was_dark) {
-        dark->since_ms = knowledge->sip_ms - since_last_ms(self, knowledge, sonars);
+        begin(self, evidence, knowledge, dark, sonars);
     }
     dark->sonars = sonars;
     dark->at_once = at_once;
-    count_lost(self, knowledge, dark);
-    dark->news = (!was_dark && at_once) || comes_to_doubt(dark);
-    pass_all(dark, knowledge);
-    dark->proven |= is_proven(dark, run, argus_count_bits(in_use) - argus_count_bits(sonars));
+    count_lost(self, evidence, knowledge, dark);
+    dark->news = (!was_dark && at_once) || comes_to_doubt(dark, run);
+    pass_all(dark, evidence, knowledge);
+    const int hear = argus_count_bits(in_use) - argus_count_bits(sonars);
+    dark->proven |= is_proven(dark, knowledge, run, hear);
 }
 
-void argus_common_sip(argus_common_t *const self, const argus_knowledge_t *const knowledge) {
+void argus_common_sip(argus_common_t *const self, const argus_evidence_t *const evidence,
+                      const argus_knowledge_t *const knowledge) {
     ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     const int32_t differ_mm_s = argus_abs(knowledge->vel_right_mm_s - knowledge->vel_left_mm_s);
     if (differ_mm_s * ARGUS_DARK_TURNING_PER_MM > knowledge->robot->track_mm) {
@@ -235,7 +305,7 @@ void argus_common_sip(argus_common_t *const self, const argus_knowledge_t *const
         }
     }
     for (int array = 0; array < argus_min(knowledge->robot->arrays, ARGUS_ARRAYS_MAX); array++) {
-        look_at(self, knowledge, array);
+        look_at(self, evidence, knowledge, array);
     }
 }
 

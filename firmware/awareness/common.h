@@ -11,8 +11,9 @@
 // failed. Its own sonars heard something in the round before; or, of a whole array, it passes walls on either
 // side that those abeam of another array go on hearing. Less than that is added up for the array as a whole,
 // since a board that fails is likelier than many coincidences: what others have heard where it was silent or
-// abeam, what those ahead had heard and should hear still, what the body has touched. First it is doubted:
-// none of it is relied on. By more, of two others at least, it is proved.
+// abeam, what those ahead had heard and should hear still, what the body has touched. A silence tells as much
+// less as that sonar has been silent more often where others heard something. First it is doubted: none of it
+// is relied on. By more, of two others at least, it is proved.
 typedef struct {
     uint32_t odometer_mm; // way driven when one abeam of another array was heard last
     int32_t mm;           // driven beside something near that it hears
@@ -28,7 +29,9 @@ typedef struct {
     argus_mask_t by;          // others that have heard what they have not
     int16_t nats;             // against it, hundredths
     uint32_t since_ms;        // the last echo of one of them
+    uint32_t odometer_mm;     // way driven when it went dark
     bool at_once;             // what it heard ended at one time, and the robot did not turn
+    bool tells;               // ... and those that lost it hear well enough for that to be a proof
     bool news;                // ... in this SIP, or there is reason to doubt it
     bool doubted;             // until one of them hears something
     bool proven;
@@ -56,7 +59,8 @@ typedef struct {
 void argus_common_init(argus_common_t *self);
 
 // After each SIP. Cost: one pass over the sonars for each array.
-void argus_common_sip(argus_common_t *self, const argus_knowledge_t *knowledge);
+void argus_common_sip(argus_common_t *self, const argus_evidence_t *evidence,
+                      const argus_knowledge_t *knowledge);
 
 // After that: takes what the evidence has found against those that are dark, and tells it which these are.
 void argus_common_weigh(argus_common_t *self, argus_evidence_t *evidence, const argus_knowledge_t *knowledge);

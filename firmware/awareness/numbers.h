@@ -139,6 +139,7 @@
     X(DARK_LEAST_OF_SOME, 5, "sonars", measured, "... where others of it go on hearing: a person hides four", "4: four healthy ones given up behind a person") \
     X(DARK_RUN, 3, "readings", reasoned, "of each without an echo, before what ended at once is proof", "not ablated") \
     X(DARK_RUN_OF_SOME, 9, "readings", reasoned, "... where two of it or more go on hearing: what a person leaves behind may be silent, too", "3: five healthy ones given up at once in 2.5 h among people") \
+    X(DARK_AT_ONCE_CNAT, 980, "cnat", measured, "that those which stopped at once tell together, by how often each is silent where something stands; less is a doubt, and proof after a stretch of way", "0: eight healthy ones given up in 1.2 h of sonars as recorded") \
     X(DARK_AT_ONCE_MS, 450, "ms", reasoned, "the echoes that it lost ended within a round and a SIP of each other", "not ablated") \
     X(DARK_TURNING_PER_MM, 5, "-", reasoned, "wheels that differ by a part of their distance, 11 degrees/s: the robot turned", "not ablated") \
     X(DARK_APART_MM, 400, "mm", reasoned, "driven from one reading to the next, at most", "not ablated") \

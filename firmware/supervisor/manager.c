@@ -209,7 +209,7 @@ static void take_evidence(argus_t *const self) {
     if (argus_rules(self)->evidence) {
         argus_evidence_sip(&self->evidence, &self->knowledge);
         argus_extremes_sip(&self->extremes, &self->knowledge);
-        argus_common_sip(&self->common, &self->knowledge);
+        argus_common_sip(&self->common, &self->evidence, &self->knowledge);
         argus_common_weigh(&self->common, &self->evidence, &self->knowledge);
         const int32_t laser = argus_evidence_laser_news(&self->evidence);
         if (laser != 0) {

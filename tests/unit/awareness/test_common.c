@@ -4,6 +4,8 @@
 
 #include <string.h>
 
+#include "awareness/evidence.h"
+#include "awareness/odds.h"
 #include "unity.h"
 
 #define NONE 5000
@@ -11,6 +13,7 @@
 #define REAR 0xFF00u
 
 static argus_common_t c;
+static argus_evidence_t e;
 static argus_knowledge_t k;
 static argus_sip_t sip;
 static uint32_t now_ms;
@@ -20,6 +23,7 @@ static int range_mm[16];
 
 void setUp(void) {
     argus_common_init(&c);
+    argus_evidence_init(&e);
     argus_knowledge_init(&k);
     memset(&sip, 0, sizeof sip);
     now_ms = 0xFFFFF000u;
@@ -47,7 +51,7 @@ static void drive(int sips, int speed_mm_s) {
         }
         at++;
         argus_knowledge_sip(&k, &sip, 1000, now_ms);
-        argus_common_sip(&c, &k);
+        argus_common_sip(&c, &e, &k);
         strikes += argus_common_strikes(&c, argus_robot_forward(k.robot));
     }
 }
@@ -100,6 +104,54 @@ void test_most_of_an_array_that_fall_silent_at_once_are_convicted(void) {
         drive(10, 0);
         TEST_ASSERT_EQUAL_HEX(FRONT & ~(1u << living), convicted());
         TEST_ASSERT_FALSE(argus_common_excuses(&c, (int)living));
+    }
+}
+
+static unsigned doubted(void) {
+    unsigned mask = 0;
+    for (int i = 0; i < 16; i++) {
+        mask |= argus_common_doubts(&c, i) ? 1u << i : 0u;
+    }
+    return mask;
+}
+
+// Each of them missed so many of ten echoes that others heard.
+static void make_deaf(unsigned sonars, int missed) {
+    for (int i = 0; i < 16; i++) {
+        for (int n = 0; n < 10 && (sonars >> i & 1u) != 0; n++) {
+            for (int silences = n == 0 ? missed * 10 : 0; silences > 0; silences--) {
+                argus_odds_note_deaf(&e, i, true);
+            }
+            argus_odds_note_deaf(&e, i, false);
+        }
+    }
+}
+
+// What sonars that are often silent lose at once may be a surface that they miss: it is reason for doubt, and
+// proof when the robot has gone on and they hear nothing still. Standing there tells nothing more.
+void test_deaf_ones_that_go_silent_together_are_given_up_when_the_way_goes_on(void) {
+    make_deaf(FRONT, 4);
+    drive(20, 200);
+    darken(FRONT);
+    drive(80, 0);
+    TEST_ASSERT_EQUAL(0, convicted());
+    TEST_ASSERT_EQUAL_HEX(FRONT, doubted());
+    drive(30, 200);
+    TEST_ASSERT_EQUAL_HEX(FRONT, convicted());
+}
+
+// A wall that only others hear tells less of an array whose sonars abeam often miss one; the rest of it does
+// not matter.
+void test_a_wall_beside_tells_less_where_those_abeam_are_deaf(void) {
+    const unsigned abeam = 1u << 0 | 1u << 7;
+    for (unsigned deaf = 0; deaf < 2; deaf++) {
+        setUp();
+        make_deaf(abeam, deaf != 0 ? 9 : 0);
+        make_deaf(FRONT & ~abeam, deaf != 0 ? 0 : 9);
+        make_deaf(REAR, 0);
+        darken(FRONT);
+        drive(140, 200);
+        TEST_ASSERT_EQUAL_HEX(deaf != 0 ? 0u : FRONT, convicted());
     }
 }
 
@@ -179,14 +231,6 @@ void test_who_passes_a_wall_that_others_hear_is_convicted(void) {
     TEST_ASSERT_EQUAL(0, convicted());
     drive(30, 200);
     TEST_ASSERT_EQUAL_HEX(FRONT, convicted());
-}
-
-static unsigned doubted(void) {
-    unsigned mask = 0;
-    for (int i = 0; i < 16; i++) {
-        mask |= argus_common_doubts(&c, i) ? 1u << i : 0u;
-    }
-    return mask;
 }
 
 // So it proves nothing, but the array is not relied on until one of it has heard something.
@@ -269,7 +313,7 @@ static void turn_until_dark(unsigned sonars) {
                 (uint16_t)(i > 15 && (sonars >> sonar & 1u) != 0 ? NONE : 900);
         }
         argus_knowledge_sip(&k, &sip, 1000, now_ms);
-        argus_common_sip(&c, &k);
+        argus_common_sip(&c, &e, &k);
         TEST_ASSERT_FALSE(argus_common_strikes(&c, argus_robot_forward(k.robot)));
     }
 }
