@@ -17,7 +17,7 @@
 
 static bool is_echo_of(const argus_t *const self, const argus_ray_t *const ray) {
     return ray->free_mm > 0 && ray->free_mm < ARGUS_RAY_TRUST_MM &&
-           self->knowledge.sip_ms - ray->t_ms <= LATELY_MS && argus_trusted(&self->knowledge, ray->sonar);
+           argus_trusted(&self->knowledge, ray->sonar);
 }
 
 // From the transducer to the end of the ray, if that lies within its cone, else 0.
@@ -38,8 +38,13 @@ int32_t argus_rewrite_cover_mm(const argus_t *const self, const int sonar) {
     const argus_point_t from = argus_to_course(&knowledge->pose, (argus_point_t){pose.x_mm, pose.y_mm});
     const int32_t bearing_cdeg = argus_angle_wrap(knowledge->pose.heading_cdeg + pose.heading_deg * 100);
     int32_t nearest_mm = 0;
-    for (int i = 0; i < self->rays.count; i++) {
-        const argus_ray_t *const ray = &self->rays.at[i];
+    const argus_rays_t *const rays = &self->rays;
+    const int count = knowledge->sip_ms - rays->newest_ms > LATELY_MS ? 0 : rays->count;
+    for (int i = 1; i <= count; i++) { // the newest first: their times are modulo 65,536 ms
+        const argus_ray_t *const ray = &rays->at[(rays->next + ARGUS_RAYS_MAX - i) % ARGUS_RAYS_MAX];
+        if ((uint16_t)(knowledge->sip_ms - ray->t_ms) > LATELY_MS) {
+            break;
+        }
         const int32_t mm =
             is_echo_of(self, ray) ? seen_mm(ray, from, bearing_cdeg, knowledge->robot->cone_deg) : 0;
         nearest_mm = mm > 0 && (nearest_mm == 0 || mm < nearest_mm) ? mm : nearest_mm;

@@ -266,7 +266,7 @@ def build_in(tree: Path, run: Run) -> dict[str, str]:
     made = {
         "argusd": tree / "build/release/argusd",
         "libargus.a": tree / "build/release/libargus.a",
-        f"argus-{BOARD}.elf": tree / f"build/{BOARD}/argus-{BOARD}.elf",
+        f"argus-{BOARD}.hex": tree / f"build/{BOARD}/argus-{BOARD}.hex",
         f"argus-{BOARD}.bin": tree / f"build/{BOARD}/argus-{BOARD}.bin",
     }
     return {name: hashlib.sha256(path.read_bytes()).hexdigest() for name, path in made.items()}

@@ -17,13 +17,17 @@ static const uint8_t sip[] = {0x32, 1,    2,    3, 4,    5,    6, 7, 8,  9,    1
                               0,    0,    0,    7, 0,    0,    4, 2, 10, 0x01, 3,  0x88, 0x13,
                               11,   0x88, 0x13, 4, 0x20, 0x03, 9, 8, 7,  6,    5};
 
-void setUp(void) {
+static void begin(uint32_t start_ms) {
     const argus_config_t settings = robot_config_of(ARGUS_PROFILE_ARGUS);
-    robot_init(&robot, &settings, 1000);
+    robot_init(&robot, &settings, start_ms);
     robot.world = robot_world_segments;
     robot.noise_mm = 6;
     robot_box(&robot, -1500, -1500, 1200, 1500);
     robot_run(&robot, 4000);
+}
+
+void setUp(void) {
+    begin(1000);
 }
 
 static size_t rewrite(argus_readings_t readings, uint8_t arrays) {
@@ -99,6 +103,20 @@ void test_covered_by_what_a_neighbour_heard_there(void) {
     TEST_ASSERT_EQUAL_UINT8(3, out[23]);
     robot_run(&robot, 3000); // too long ago
     TEST_ASSERT_EQUAL_INT32(0, argus_rewrite_cover_mm(&robot.argus, 3));
+}
+
+// However long it has been running, and over the wrap of the clock.
+void test_covered_at_any_time(void) {
+    static const uint32_t starts_ms[] = {62000, 70000, 3600000, UINT32_MAX - 6000};
+    for (size_t i = 0; i < sizeof starts_ms / sizeof starts_ms[0]; i++) {
+        begin(starts_ms[i]);
+        take_out(3);
+        turn_away_and_back();
+        TEST_ASSERT_INT32_WITHIN(60, robot_world_segments(&robot, 3),
+                                 argus_rewrite_cover_mm(&robot.argus, 3));
+        robot_run(&robot, 3000); // too long ago
+        TEST_ASSERT_EQUAL_INT32(0, argus_rewrite_cover_mm(&robot.argus, 3));
+    }
 }
 
 void test_what_was_heard_by_one_that_is_out_too_covers_nothing(void) {

@@ -684,7 +684,8 @@ static void watch_blind_move(robot_t *robot, int32_t mm, unsigned blind) {
     if (nearest_ahead_mm(robot, blind) <= range_mm) {
         complain(robot, "S1: MOVE ahead towards an object", nearest_ahead_mm(robot, blind));
     }
-    if (steps && (mm > robot->argus.config.step_mm || !robot->swept)) {
+    const bool seen = argus_rules(&robot->argus)->drives_seen && argus_guard_seen_mm(&guard) >= mm;
+    if (steps && (mm > robot->argus.config.step_mm || !(robot->swept || seen))) {
         complain(robot, "S1: MOVE ahead beyond the step or without a sweep", mm);
     }
     if (!steps && (!guard.profile->drives_seen || mm > argus_guard_seen_mm(&guard))) {
