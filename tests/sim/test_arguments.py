@@ -92,7 +92,7 @@ def test_an_option_that_is_mistyped_where_one_must_be_given(capsys: pytest.Captu
         (lambda: parse_fault("wrong:3:scal=2"), "scale="),
         (lambda: parse_physics("rogh-day"), "rough-day"),
         (lambda: load_scenario("bad-dya"), "bad-day"),
-        (lambda: setting_value("polcy", "fewest"), "policy"),
+        (lambda: setting_value("policyx", "fewest"), "policy"),
     ],
 )
 def test_a_name_that_is_mistyped_is_answered_so_too(make: Callable[[], object], meant: str) -> None:

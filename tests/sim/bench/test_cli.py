@@ -35,7 +35,7 @@ def bench(*words: str) -> int:
     [
         ([], "name one of diagnosis"),
         (["navigation"], "no bench 'navigation'; name one of diagnosis"),
-        (["jurney"], "did you mean journey? name one of diagnosis"),
+        (["journeyx"], "did you mean journey? name one of diagnosis"),
         (["diagnosis", "--seeds", "3-1"], "'3-1' is no range of seeds"),
         (["diagnosis", "--seeds", "x"], "'x' is no range of seeds"),
         (["diagnosis", "--kinds", "off,broken"], "'broken' is no kind"),
