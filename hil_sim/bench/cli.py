@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from hil_sim.arguments import offer
-from hil_sim.bench import cli_passive, journey_cli, lasers, plan, pool, quick
+from hil_sim.bench import cli_passive, journey_cli, lasers, plan, pool, quick, recorded_cli
 from hil_sim.bench.arguments import (
     EXIT_FAILED,
     EXIT_INTERRUPTED,
@@ -207,6 +207,7 @@ def main(argv: Sequence[str]) -> int:
         "ablate": cli_passive.ablate,
         "likelihoods": cli_passive.likelihoods,
         "laser": lasers.main,
+        "recorded": recorded_cli.recorded,
     }
     if not argv or argv[0] not in names:
         if argv and argv[0] in ("-h", "--help"):

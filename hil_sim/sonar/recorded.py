@@ -34,15 +34,20 @@ def _share(salt: int, *numbers: int) -> float:
 class Recorded:
     """The statistics of one robot's sonars in one run, drawn from hil_sim/tables/recorded.toml."""
 
-    def __init__(self, strength: float, sonars: int, rng: np.random.Generator) -> None:
-        """`strength`: 1 is as in the recordings; less keeps some of the plain model's noise, and lowers the shares."""
+    def __init__(
+        self, strength: float, sonars: int, rng: np.random.Generator, *, hears_all: bool = False
+    ) -> None:
+        """`strength`: 1 is as in the recordings; less keeps some of the plain model's noise, and lowers the shares.
+
+        hears_all: the ranges are not of the plain model, which is silent for a part of it by itself.
+        """
         table: dict[str, Any] = load("recorded")
         rest, silence, near = table["rest"], table["silence"], table["near"]
         self.strength = strength
         self._salt = int(rng.integers(1 << 63))
         self.jitter_mm = [float(v) for v in rng.choice(rest["jitter_mm"], sonars)]
         self.late = [strength * float(v) for v in rng.choice(rest["late"], sonars)]
-        model = float(silence["model"])
+        model = 0.0 if hears_all else float(silence["model"])
         missed = [max(0.0, (float(v) - model) / (1 - model)) for v in rng.choice(silence["by_sonar"], sonars)]
         self.missed = [strength * share for share in missed]
         self._step_mm = float(rest["step_mm"])

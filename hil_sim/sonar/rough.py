@@ -21,7 +21,10 @@ _REPETITIONS: Final = 3
 class Roughness:
     """The departures from the plain model of one robot's sonars in one run."""
 
-    def __init__(self, physics: Physics, sonars: int, rng: np.random.Generator) -> None:
+    def __init__(
+        self, physics: Physics, sonars: int, rng: np.random.Generator, *, hears_all: bool = False
+    ) -> None:
+        """hears_all: the ranges come from what a laser sees, so all silence is to be drawn."""
         self.physics = physics
         self._random = rng.random
         self.gain_db = [float(v) for v in rng.uniform(-1.0, 1.0, sonars) * physics.gain_db]
@@ -30,7 +33,7 @@ class Roughness:
         self.scale = [float(v) * sound for v in scales]
         # A stream of its own: without it the other draws are as before.
         on = physics.as_recorded
-        self.recorded = Recorded(on, sonars, rng.spawn(1)[0]) if on else None
+        self.recorded = Recorded(on, sonars, rng.spawn(1)[0], hears_all=hears_all) if on else None
 
     def draw(self) -> tuple[bool, bool]:
         """Draw for one ping: whether it hears nothing, and whether it hears a double bounce if there is one."""
