@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import argparse
-import functools
 import json
 import os
 import sys
@@ -112,10 +111,8 @@ def recorded(argv: Sequence[str]) -> int:
     drives, failed = _drives(arguments)
     if not drives:
         raise SimError(f"{arguments.bags}: no recording of 3 m or more with odometry and a laser in it")
-    jobs_of = functools.partial(_jobs_of, wanted=arguments.kinds or list(_KINDS))
-    work = [job for seed in arguments.seeds for drive in drives for job in jobs_of(drive, seed)]
     try:
-        figures = summarise(_judge(work, arguments.jobs))
+        figures = summarise(_judge(_work(arguments, drives), arguments.jobs))
     except KeyboardInterrupt:
         return EXIT_INTERRUPTED
     print(_heading(drives) + table(figures), end="")
@@ -124,6 +121,11 @@ def recorded(argv: Sequence[str]) -> int:
             arguments.json, {"core": core_digest(), "physics": "recorded", "drives": len(drives)} | figures
         )
     return EXIT_FAILED if failed else 0
+
+
+def _work(arguments: argparse.Namespace, drives: Sequence[Drive]) -> list[_Job]:
+    wanted = arguments.kinds or list(_KINDS)
+    return [job for seed in arguments.seeds for drive in drives for job in _jobs_of(drive, seed, wanted)]
 
 
 def _jobs_of(drive: Drive, seed: int, wanted: Sequence[str]) -> list[_Job]:
