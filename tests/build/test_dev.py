@@ -15,7 +15,7 @@ from unittest import mock
 
 import lizard
 import pytest
-from devtool import cli, cmake, testing
+from devtool import cli, cmake, system, testing
 from devtool import commands as running
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -94,6 +94,13 @@ def test_list_prints_the_stages_and_does_nothing(command: str) -> None:
 
 def stages_of(*arguments: str) -> list[str]:
     return [line.split()[0] for line in dev_here(*arguments, "--list").stdout.splitlines()]
+
+
+def test_what_a_stage_needs_is_known() -> None:
+    """An unknown one would end the whole command before its first stage."""
+    for stage in (*testing.TEST_STAGES, *testing.QUICK_STAGES, *testing.SOAK_STAGES):
+        assert set(stage.needs) <= set(system.NEEDS), stage.name
+        assert set(stage.presets) <= set(cmake.presets()), stage.name
 
 
 def test_the_quick_stages_are_some_of_all() -> None:

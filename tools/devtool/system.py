@@ -143,6 +143,7 @@ NEEDS: Final = {
     "can-utils": command_need("candump", "can-utils"),
     "doxygen": command_need("doxygen", "doxygen"),
     "cppcheck": command_need("cppcheck", "cppcheck"),
+    "valgrind": command_need("valgrind", "valgrind"),
 }
 BASIC_NEEDS: Final = ("gcc", "libc", "cmake", "generator", "venv", "inih", "curses")
 PRESET_NEEDS: Final = {
