@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
@@ -115,7 +116,12 @@ def test_who_is_explained_is_not_tried(
     monkeypatch.setattr(mutation, "DEBUG", file.parent)
     (file.parent / "build.ninja").touch()
     tried = list[Mutant]()
-    monkeypatch.setattr(mutation, "fates_of", lambda mutants, *_: tried.extend(mutants) or {})
+
+    def try_out(mutants: Sequence[Mutant], *_: object) -> dict[Mutant, str]:
+        tried.extend(mutants)
+        return {}
+
+    monkeypatch.setattr(mutation, "fates_of", try_out)
     mutation.do_mutate(argparse.Namespace(file=[], sample=1, seed=1, jobs=1, widely=False))
     assert mutant not in tried
     assert len(tried) == len(mutants_of(file)) - 1

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from devtool import supply
+from devtool.setup import HEADER
 from devtool.stages import StageFailed
 from devtool.supply import Part, bill, compare, needed, pinned, python_parts
 
@@ -52,7 +53,7 @@ def test_a_tree_is_copied_with_a_time_of_its_own(tmp_path: Path) -> None:
     supply.copy_tree(tmp_path / "a", 1_600_000_000)
     copied = tmp_path / "a/firmware/include/argus/argus.h"
     assert copied.stat().st_mtime == 1_600_000_000
-    assert copied.read_bytes() == supply.HEADER.read_bytes()
+    assert copied.read_bytes() == HEADER.read_bytes()
     assert not (tmp_path / "a/build").exists()
 
 
