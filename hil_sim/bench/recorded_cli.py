@@ -6,7 +6,6 @@ from __future__ import annotations
 import argparse
 import json
 import os
-import sys
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
@@ -136,4 +135,4 @@ def _write(path: Path, figures: dict[str, Any]) -> None:
     try:
         path.write_text(json.dumps(figures, indent=2) + "\n", encoding="utf-8")
     except OSError as error:
-        print(f"argus-sim: {path}: cannot write ({error.strerror})", file=sys.stderr)
+        raise SimError(f"{path}: cannot write ({error.strerror}); name another file") from error
