@@ -117,7 +117,7 @@ def commands(monkeypatch: pytest.MonkeyPatch) -> dict[str, list[list[str]]]:
     for module in (cmake, testing):
         monkeypatch.setattr(module, "build", lambda preset, run: None)
     for stage in {*testing.TEST_STAGES, *testing.SOAK_STAGES}:
-        if stage.name not in {"hil", "can", "ros", "packages", "monitor", "docs", "coverage", "mcdc", "misra"}:
+        if stage.name not in {"hil", "can", "ros", "packages", "monitor", "docs", "coverage", "mcdc", "misra", "reproduce"}:
             runs: list[list[str]] = found.setdefault(stage.name, [])
             stage.action(lambda command, runs=runs: runs.append([str(word) for word in command]))  # type: ignore[misc]
     return found

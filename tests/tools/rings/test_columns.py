@@ -180,7 +180,7 @@ def test_columns_of_any_name_are_named_by_the_user(tmp_path: Path, way: str) -> 
 @pytest.mark.parametrize(
     ("told", "why"),
     [
-        ("t_s=nowhere", "no such column; there are Zeit"),
+        ("t_s=nowhere", "no such column; name one of Zeit"),
         ("voltage=Zeit", "give NAME=COLUMN"),
         ("t_s", "give NAME=COLUMN"),
         ("x_m=odo 1", "no columns of time and ranges"),
