@@ -211,7 +211,6 @@ class MovingSolids(MoversState):
         self.places: Floats = np.zeros((len(self.actors), 4))
         """For each actor x, y, cosine and sine of its axes, as `place` left them."""
         self._flat = memoryview(self.places.data).cast("B").cast("d")
-        self._placed = -1
 
     @property
     def fits_c(self) -> bool:
@@ -227,9 +226,6 @@ class MovingSolids(MoversState):
 
     def place(self) -> None:
         """Bring `places` up to date."""
-        if self._placed == self.moment:
-            return
-        self._placed = self.moment
         flat, at = self._flat, 0
         for actor in self.actors:
             flat[at], flat[at + 1], flat[at + 2], flat[at + 3] = actor.x, actor.y, actor.c, actor.s

@@ -24,10 +24,9 @@ from typing import Any, Final
 from devtool.base import CORES, EXIT_USAGE, ROOT, VENV, Add, Run, Stop, say, shown
 from devtool.commands import quietly
 from devtool.packaging import DIST, release_time
-from devtool.setup import HEADER, ensure
+from devtool.setup import LOCK, ensure, version
 from devtool.stages import StageFailed
 
-LOCK: Final = ROOT / "requirements.lock"
 PINNED: Final = re.compile(r"^([a-z0-9][a-z0-9._-]*)==([^ \\;]+)", re.MULTILINE)
 NAME: Final = re.compile(r"[A-Za-z0-9._-]+")
 IN_ALL: Final = "argus"
@@ -74,14 +73,6 @@ class Part:
         if self.home:
             told["externalReferences"] = [{"type": "website", "url": self.home}]
         return told
-
-
-def version() -> str:
-    """Return the version of Argus, which the public header has."""
-    found = re.search(r'^#define ARGUS_VERSION "(.+)"$', HEADER.read_text(encoding="utf-8"), re.MULTILINE)
-    if found is None:
-        raise Stop(f"{shown(HEADER)}: no ARGUS_VERSION")
-    return found[1]
 
 
 def output_of(*command: str) -> str:
