@@ -339,7 +339,7 @@ bool argus_observe(argus_t *const self, const uint32_t now_ms, const argus_obser
     argus_sip_of(&session->sip, observation, argus_robot_built(self->knowledge.robot));
     const unsigned bits = argus_session_observe(session, &self->config, now_ms);
     handle(self, bits);
-    return bits != 0;
+    return bits != 0 && argus_robot_is_known(self->knowledge.robot);
 }
 
 // No order is taken for done because it was sent.

@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { NAME_MAX_LENGTH = 40, MISTYPED_MAX = 2 };
+enum { NAME_MAX_LENGTH = 40, MISTYPED_MAX = 2, HEAD_MISTYPED_MAX = 1 };
 
 static size_t least(size_t a, size_t b) {
     return a < b ? a : b;
@@ -41,11 +41,12 @@ void hal_meant_begin(hal_meant_t *self, const char *word, size_t length) {
     *self = (hal_meant_t){.word = word, .length = length, .best = least(MISTYPED_MAX, length / 2U) + 1U};
 }
 
-void hal_meant_weigh(hal_meant_t *self, const char *name, size_t length) {
-    if (self->length > NAME_MAX_LENGTH || length > NAME_MAX_LENGTH) {
+// The name is `length` bytes long; `told_by` of them are held against the word.
+static void weigh(hal_meant_t *self, const char *name, size_t length, size_t told_by) {
+    if (self->length > NAME_MAX_LENGTH || told_by > NAME_MAX_LENGTH) {
         return;
     }
-    const size_t away = distance(self->word, self->length, name, length);
+    const size_t away = distance(self->word, self->length, name, told_by);
     if (away < self->best) {
         self->best = away;
         self->nearest = name;
@@ -53,15 +54,29 @@ void hal_meant_weigh(hal_meant_t *self, const char *name, size_t length) {
     }
 }
 
-void hal_meant_weigh_list(hal_meant_t *self, const char *names) {
+void hal_meant_weigh(hal_meant_t *self, const char *name, size_t length) {
+    weigh(self, name, length, length);
+}
+
+// Each of "a|b|c", by what of it stands before the first of `ends`.
+static void weigh_list(hal_meant_t *self, const char *names, const char *ends) {
     for (;;) {
         const size_t length = strcspn(names, "|");
-        hal_meant_weigh(self, names, length);
+        weigh(self, names, length, strcspn(names, ends));
         if (names[length] == '\0') {
             return;
         }
         names += length + 1;
     }
+}
+
+void hal_meant_weigh_list(hal_meant_t *self, const char *names) {
+    weigh_list(self, names, "|");
+}
+
+void hal_meant_weigh_heads(hal_meant_t *self, const char *names) {
+    self->best = least(self->best, HEAD_MISTYPED_MAX + 1U);
+    weigh_list(self, names, "-|");
 }
 
 void hal_meant_ask(const hal_meant_t *self, const char *before, char *text, size_t capacity) {

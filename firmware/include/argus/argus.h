@@ -861,7 +861,8 @@ void argus_receive(argus_t *self, uint32_t now_ms, const uint8_t *bytes, size_t 
 // Beside argus_receive(), for a robot that speaks no ARCOS: pose, speeds and ranges go in, the same events
 // come out. Some ten times a second. The manager only listens then: argus_transmit() has nothing. The body is
 // that of argus_set_ring(), or of the setting `robot`. After link_lost_ms without a call the session is lost,
-// the next call opens another. False: after argus_shutdown(). Cost: as of a SIP.
+// the next call opens another. False: after argus_shutdown(), or without a body (event SUBCLASS_UNKNOWN), as
+// nothing is judged then. Cost: as of a SIP.
 bool argus_observe(argus_t *self, uint32_t now_ms, const argus_observation_t *observation);
 
 // Does what time alone makes due; returns the ms (1..100) after which it wants to be called again. Cost: much

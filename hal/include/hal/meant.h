@@ -23,6 +23,9 @@ void hal_meant_weigh(hal_meant_t *self, const char *name, size_t length);
 // Weighs each of "a|b|c".
 void hal_meant_weigh_list(hal_meant_t *self, const char *names);
 
+// Weighs the head of each, that is "p3dx" of "p3dx-sh", behind the whole names: one letter may be wrong.
+void hal_meant_weigh_heads(hal_meant_t *self, const char *names);
+
 // Writes "; did you mean NAME?", NAME with `before` ahead of it; "" when none is near.
 void hal_meant_ask(const hal_meant_t *self, const char *before, char *text, size_t capacity);
 

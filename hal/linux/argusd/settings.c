@@ -50,6 +50,7 @@ static void ask_for_choice(const row_t *row, const char *text, char *question, s
     hal_meant_t meant;
     hal_meant_begin(&meant, text, strlen(text));
     hal_meant_weigh_list(&meant, row->choices);
+    hal_meant_weigh_heads(&meant, row->choices);
     hal_meant_ask(&meant, "", question, capacity);
 }
 

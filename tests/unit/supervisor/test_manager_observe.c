@@ -163,6 +163,27 @@ void test_what_the_ring_calls_no_echo_is_none(void) {
     TEST_ASSERT_EQUAL_UINT16_ARRAY(read_mm, &it.reading_mm[1], 4);
 }
 
+void test_without_a_body_it_is_refused_each_time(void) {
+    argus_config_t config;
+    argus_config_default(&config);
+    argus = argus_init(&storage, &config, now_ms);
+    int unknown = 0;
+    argus_event_t event;
+    for (int i = 0; i < 10; i++) {
+        TEST_ASSERT_FALSE(observe(-1, 0));
+        while (argus_next_event(argus, &event)) {
+            unknown += event.id == ARGUS_EV_SUBCLASS_UNKNOWN;
+        }
+        now_ms += STEP_MS;
+    }
+    TEST_ASSERT_EQUAL(1, unknown);
+    TEST_ASSERT_EQUAL(ARGUS_BAR_UNKNOWN, status().bar);
+    config.robot = 1; // the setting is enough
+    argus = argus_init(&storage, &config, now_ms);
+    TEST_ASSERT_TRUE(observe(-1, 0));
+    TEST_ASSERT_GREATER_THAN(0, status().sonars);
+}
+
 void test_old_ranges_are_no_news(void) {
     TEST_ASSERT_TRUE(observe(-1, 0));
     now_ms += STEP_MS;
