@@ -131,7 +131,8 @@ void test_a_robot_is_chosen_by_name(void) {
     TEST_ASSERT_TRUE(settings_choose(&settings, SETTINGS_robot, "amigo-sh", "--robot", why, sizeof why));
     TEST_ASSERT_EQUAL(argus_robot_choice(argus_robot_find("amigo-sh")), settings.config.robot);
     TEST_ASSERT_FALSE(settings_choose(&settings, SETTINGS_robot, "amigo", "--robot", why, sizeof why));
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(why, "--robot amigo; did you mean amigo-sh? choose one of by-subclass|p3dx-sh|"), why);
+    TEST_ASSERT_NOT_NULL_MESSAGE(
+        strstr(why, "--robot amigo; did you mean amigo-sh? choose one of by-subclass|p3dx-sh|"), why);
     TEST_ASSERT_EQUAL(argus_robot_choice(argus_robot_find("amigo-sh")), settings.config.robot);
 }
 
