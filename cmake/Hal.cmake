@@ -34,16 +34,6 @@ endif()
 if(ARGUS_STATIC)
     set(CMAKE_FIND_LIBRARY_SUFFIXES .a)
 endif()
-find_path(INIH_INCLUDE_DIR ini.h)
-find_library(INIH_LIBRARY inih)
-if(NOT INIH_INCLUDE_DIR OR NOT INIH_LIBRARY)
-    set(advice "argusd needs inih: apt-get install libinih-dev (or -DARGUS_ARGUSD=OFF for the library alone)")
-    if(ARGUS_ARGUSD STREQUAL "AUTO")
-        message(WARNING "argusd is not built. ${advice}")
-        return()
-    endif()
-    message(FATAL_ERROR "${advice}")
-endif()
 
 # Everything but main() is a library, so that unit tests can reach it.
 add_library(argusd_parts STATIC ${argusd_sources})
@@ -51,9 +41,8 @@ target_include_directories(argusd_parts PUBLIC ${PROJECT_SOURCE_DIR}/hal/linux/a
 # --auto-baud reads and writes packets before there is a manager, --inject rewrites those that go to it: both use the wire
 # part of the firmware, which is usable alone.
 set_source_files_properties(hal/linux/argusd/guards.c hal/linux/argusd/probe.c hal/linux/argusd/inject.c PROPERTIES INCLUDE_DIRECTORIES ${PROJECT_SOURCE_DIR}/firmware)
-target_include_directories(argusd_parts SYSTEM PUBLIC ${INIH_INCLUDE_DIR})
 target_compile_options(argusd_parts PRIVATE ${ARGUS_STRICT})
-target_link_libraries(argusd_parts PUBLIC argus_hal argus ${INIH_LIBRARY} PRIVATE argus_flags)
+target_link_libraries(argusd_parts PUBLIC argus_hal argus PRIVATE argus_flags)
 if(ARGUS_TUI)
     set(CURSES_NEED_WIDE TRUE)
     find_package(Curses QUIET)

@@ -76,7 +76,7 @@ def test_the_packages_and_their_files(debs: dict[str, Path], unpacked: Path) -> 
     for deb in debs.values():
         assert field(deb, "Version") == argus.__version__
         assert "root/root" in run("dpkg-deb", "-c", deb).splitlines()[0]
-    assert "libinih1" in field(debs["argusd"], "Depends")
+    assert "libncurses" in field(debs["argusd"], "Depends")
     assert field(debs["libargus-dev"], "Depends") == f"libargus0.1 (= {argus.__version__})"
 
 

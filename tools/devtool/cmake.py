@@ -49,7 +49,7 @@ def configure(preset: str, run: Run, compiler: str = "") -> None:
         shutil.rmtree(folder)
     if cache.exists() and (folder / "CMakeFiles").exists() and stamp.exists() and stamp.read_text() == recipe:
         return
-    # A test of argusd that is left out because inih is missing would be a silent skip.
+    # A test of the screen that is left out because curses is missing would be a silent skip.
     extra = [] if preset in WITHOUT_ARGUSD else ["-DARGUS_ARGUSD=ON", "-DARGUS_TUI=ON"]
     extra += [f"-DCMAKE_C_COMPILER={compiler}"] if compiler else []
     run(["cmake", "--fresh", "--preset", preset, *extra])

@@ -57,13 +57,13 @@ def needs_of(arch: str) -> list[str]:
 
 
 def foreign_libraries(arch: str, run: Run) -> Path | None:
-    """Unpack Debian's inih and ncurses for ARCH into the build folder; None where apt has none.
+    """Unpack Debian's ncurses for ARCH into the build folder; None where apt has none.
 
     Nothing of the system is changed: apt looks at lists of its own.
     """
     place = WORK / f"libraries-{arch}"
     root = place / "root"
-    if (root / "usr/include/ini.h").exists() and (root / "usr/include/curses.h").exists():
+    if (root / "usr/include/curses.h").exists():
         return root
     if shutil.which("apt-get") is None or shutil.which("dpkg-deb") is None:
         return None
@@ -78,13 +78,11 @@ def foreign_libraries(arch: str, run: Run) -> Path | None:
     ]
     try:
         run(["apt-get", "-q", *options, "update"])
-        run(["env", "-C", place, "apt-get", "-q", *options, "download", "libinih-dev", "libncurses-dev"])
+        run(["env", "-C", place, "apt-get", "-q", *options, "download", "libncurses-dev"])
         for package in sorted(place.glob("*.deb")):
             run(["dpkg-deb", "-x", package, root])
     except StageFailed:
-        say(
-            f"the wheel for {arch} has no argusd: apt has no libinih-dev and libncurses-dev for {debian} here"
-        )
+        say(f"argusd in the wheel for {arch} has no screen: apt has no libncurses-dev for {debian} here")
         return None
     return root
 
@@ -104,10 +102,7 @@ def make_wheel(arch: str, run: Run) -> None:
     ]
     libraries = None if arch == HERE else foreign_libraries(arch, run)
     if arch == HERE or libraries is not None:
-        command += [
-            "--config-settings=cmake.define.ARGUS_ARGUSD=ON",
-            "--config-settings=cmake.define.ARGUS_TUI=ON",
-        ]
+        command.append("--config-settings=cmake.define.ARGUS_TUI=ON")
     if libraries is not None:
         command.append(f"--config-settings=cmake.define.CMAKE_FIND_ROOT_PATH={libraries}")
     if arch != HERE:

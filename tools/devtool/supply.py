@@ -30,10 +30,10 @@ from devtool.stages import StageFailed
 PINNED: Final = re.compile(r"^([a-z0-9][a-z0-9._-]*)==([^ \\;]+)", re.MULTILINE)
 NAME: Final = re.compile(r"[A-Za-z0-9._-]+")
 IN_ALL: Final = "argus"
-INIH, NCURSES, LIBC = "BSD-3-Clause", "MIT-open-group", "LGPL-2.1-or-later"
+NCURSES, LIBC = "MIT-open-group", "LGPL-2.1-or-later"
 DEBIAN: Final[Mapping[str, tuple[tuple[str, str], ...]]] = {
-    "wheel": (("libinih-dev", INIH), ("libncurses-dev", NCURSES), ("libc6-dev", LIBC)),
-    "deb": (("libinih1", INIH), ("libncurses6", NCURSES), ("libtinfo6", NCURSES), ("libc6", LIBC)),
+    "wheel": (("libncurses-dev", NCURSES), ("libc6-dev", LIBC)),
+    "deb": (("libncurses6", NCURSES), ("libtinfo6", NCURSES), ("libc6", LIBC)),
     "image": (
         ("libnewlib-arm-none-eabi", "BSD-3-Clause"),
         ("gcc-arm-none-eabi", "GPL-3.0-with-GCC-exception"),

@@ -95,7 +95,6 @@ NEEDS: Final = {
         lambda: quiet_ok([base_python(), "-c", "import ensurepip, venv"]),
         lambda: ["python3-venv"],
     ),
-    "inih": Need("inih", functools.partial(has_library, "ini.h", "-linih"), lambda: ["libinih-dev"]),
     "curses": Need(
         "curses", functools.partial(has_library, "curses.h", "-lncursesw"), lambda: ["libncurses-dev"]
     ),
@@ -145,7 +144,7 @@ NEEDS: Final = {
     "cppcheck": command_need("cppcheck", "cppcheck"),
     "valgrind": command_need("valgrind", "valgrind"),
 }
-BASIC_NEEDS: Final = ("gcc", "libc", "cmake", "generator", "venv", "inih", "curses")
+BASIC_NEEDS: Final = ("gcc", "libc", "cmake", "generator", "venv", "curses")
 PRESET_NEEDS: Final = {
     "m32": ("m32",),
     "cortex-m4": ("cortex-m4",),

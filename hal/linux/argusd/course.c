@@ -85,14 +85,6 @@ static int fetch_line(FILE *file, char *line, size_t capacity) {
     return (int)length;
 }
 
-// A mark of UTF-8, as some editors write it at the beginning of a file, is none of its text.
-static void drop_mark(char *line) {
-    static const char mark[] = "\xEF\xBB\xBF";
-    if (strncmp(line, mark, sizeof mark - 1) == 0) {
-        memmove(line, line + sizeof mark - 1, strlen(line) - (sizeof mark - 1) + 1);
-    }
-}
-
 bool course_read(course_t *course, FILE *file, const char *path, char *message, size_t capacity) {
     char line[LINE_MAX_BYTES];
     char problem[ARGUSD_MESSAGE_MAX / 2];
@@ -103,7 +95,7 @@ bool course_read(course_t *course, FILE *file, const char *path, char *message, 
             return text_refuse(message, capacity, "%s:%d: not a line of text; write x_mm,y_mm", path, number);
         }
         if (number == 1) {
-            drop_mark(line);
+            text_drop_mark(line);
         }
         if (!read_line(course, line, problem, sizeof problem)) {
             return text_refuse(message, capacity, "%s:%d: %s", path, number, problem);

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Config files, by inih over the firmware's table of settings.
+// Config files, over the firmware's table of settings.
 #include "settings.h"
 
 #include <errno.h>
-#include <ini.h>
 #include <stddef.h>
 #include <string.h>
 
@@ -12,6 +11,8 @@
 #include "text.h"
 
 #define SECTION "argus"
+#define BLANKS " \t\r"
+#define LINE_MAX_BYTES 200
 
 typedef struct {
     const char *key;
@@ -127,9 +128,7 @@ static int take_value(load_t *load, const row_t *row, const char *text) {
     return 1;
 }
 
-static int take_key(void *user, const char *section, const char *name, const char *value) {
-    load_t *const load = user;
-    (void)section; // checked by read_line
+static int take_key(load_t *load, const char *name, const char *value) {
     for (int i = 0; i < SETTINGS_COUNT; i++) {
         if (strcmp(rows[i].key, name) != 0) {
             continue;
@@ -144,28 +143,58 @@ static int take_key(void *user, const char *section, const char *name, const cha
     return refuse_unknown(load, name);
 }
 
-// Cuts the blanks at both ends: a leading one would mean a continued line to the parser.
+// Cuts the blanks at both ends.
 static void trim(char *line) {
-    const size_t blanks = strspn(line, " \t");
+    const size_t blanks = strspn(line, BLANKS);
     memmove(line, line + blanks, strlen(line + blanks) + 1);
     size_t length = strlen(line);
-    while (length > 0 && strchr(" \t\r\n", line[length - 1]) != NULL) {
+    while (length > 0 && strchr(BLANKS, line[length - 1]) != NULL) {
         line[--length] = '\0';
     }
 }
 
-static void check_section(load_t *load, const char *line) {
-    if (line[0] == '[' && strcmp(line, "[" SECTION "]") != 0) {
-        refuse(load, "unknown section %.60s; use [" SECTION "] or none", line);
+// A remark behind a value begins with a semicolon after a blank.
+static void cut_remark(char *text) {
+    for (char *at = strchr(text, ';'); at != NULL; at = strchr(at + 1, ';')) {
+        if (at == text || strchr(BLANKS, at[-1]) != NULL) {
+            *at = '\0';
+            return;
+        }
     }
 }
 
-static char *read_line(char *line, int capacity, void *stream) {
-    load_t *const load = stream;
-    int length = 0;
+static int take_section(load_t *load, const char *line) {
+    return strcmp(line, "[" SECTION "]") == 0
+               ? 1
+               : refuse(load, "unknown section %.60s; use [" SECTION "] or none", line);
+}
+
+// KEY = VALUE or KEY : VALUE, a section, a comment, or nothing.
+static int take_line(load_t *load, char *line) {
+    trim(line);
+    if (line[0] == '\0' || strchr("#;", line[0]) != NULL) {
+        return 1;
+    }
+    if (line[0] == '[') {
+        return take_section(load, line);
+    }
+    cut_remark(line);
+    char *const sign = strpbrk(line, "=:");
+    if (sign == NULL) {
+        return refuse(load, "malformed line; write key = value");
+    }
+    *sign = '\0';
+    trim(line);
+    trim(sign + 1);
+    return take_key(load, line, sign + 1);
+}
+
+// Whether there was one; what is too long of it is refused, not split.
+static bool read_line(load_t *load, char *line, size_t capacity) {
+    size_t length = 0;
     int byte = getc(load->file);
     if (byte == EOF) {
-        return NULL;
+        return false;
     }
     load->line++;
     for (; byte != EOF && byte != '\n'; byte = getc(load->file)) {
@@ -174,28 +203,26 @@ static char *read_line(char *line, int capacity, void *stream) {
         } else if (length + 1 < capacity) {
             line[length++] = (char)byte;
         } else {
-            refuse(load, "the line is longer than %d characters", capacity - 1);
+            refuse(load, "the line is longer than %d characters", (int)capacity - 1);
         }
     }
     line[length] = '\0';
-    trim(line);
-    check_section(load, line);
-    return line;
+    return true;
 }
 
 bool settings_read(settings_t *self, FILE *file, const char *path, char *message, size_t capacity) {
     char reason[ARGUSD_MESSAGE_MAX / 2];
+    char line[LINE_MAX_BYTES];
     load_t load = {.settings = self, .file = file, .reason = text_in(reason, sizeof reason)};
     settings_default(self);
-    const int bad = ini_parse_stream(read_line, &load, take_key, &load);
+    while (read_line(&load, line, sizeof line)) {
+        if (load.line == 1) {
+            text_drop_mark(line);
+        }
+        take_line(&load, line);
+    }
     if (ferror(file)) {
         return text_refuse(message, capacity, "%s: cannot be read: %s", path, strerror(errno));
-    }
-    if (bad < 0) {
-        return text_refuse(message, capacity, "%s: cannot be read: out of memory", path);
-    }
-    if (bad > 0 && (load.bad_line == 0 || bad < load.bad_line)) {
-        return text_refuse(message, capacity, "%s:%d: malformed line; write key = value", path, bad);
     }
     if (load.bad_line > 0) {
         return text_refuse(message, capacity, "%s:%d: %s", path, load.bad_line, reason);

@@ -126,3 +126,10 @@ bool text_length_mm(const char *text, int32_t *mm) {
     *mm = (int32_t)(*given == '-' ? -rounded : rounded);
     return true;
 }
+
+void text_drop_mark(char *line) {
+    static const char mark[] = "\xEF\xBB\xBF";
+    if (strncmp(line, mark, sizeof mark - 1) == 0) {
+        memmove(line, line + sizeof mark - 1, strlen(line) - (sizeof mark - 1) + 1);
+    }
+}

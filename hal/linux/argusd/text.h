@@ -31,4 +31,7 @@ bool text_number(const char *text, int32_t *value);
 // to whole mm; else as above.
 bool text_length_mm(const char *text, int32_t *mm);
 
+// A mark of UTF-8, as some editors write it at the beginning of a file, is none of its text.
+void text_drop_mark(char *line);
+
 #endif

@@ -8,7 +8,7 @@ import datetime
 import math
 import sys
 from array import array
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
@@ -58,6 +58,14 @@ _STYLE: Final[Any] = {
 }
 # A reading this much older than the moment shown is drawn pale.
 FRESH_S: Final = 0.5
+_OLD: Final = f"older than {FRESH_S} s"
+# What a ring may show, in the order of its legend: colour and strength.
+_RING: Final = {
+    "echo": (_LINE, 0.6),
+    "no echo": (_SILENT, 0.3),
+    _OLD: (_LINE, 0.2),
+    **{_LABEL[kind]: (_COLOUR[kind], 0.4) for kind in (DEAD, SUSPECT)},
+}
 # Times from here on count from 1970: those of a clock that counts from its own start are smaller.
 CALENDAR_S: Final = 1e9
 # The picture of the ring: how far it reaches, and half of a letter's width and height in its text, all in mm.
@@ -362,6 +370,24 @@ def reading_text(number: int, range_mm: int, held: str | None) -> str:
     return f"{number}: {reads}" + (f", {held}" if held else "")
 
 
+def ring_legend(moment: float, last: Mapping[int, tuple[float, int]], held: Mapping[int, str]) -> list[str]:
+    """Return what the ring shows, each once: nothing is in its legend that is not drawn.
+
+    >>> ring_legend(9.0, {1: (9.0, 800), 3: (9.0, 5000)}, {3: "suspect"})
+    ['echo', 'suspect']
+    >>> ring_legend(9.0, {1: (9.0, 5000), 2: (7.0, 900)}, {})
+    ['echo', 'no echo', 'older than 0.5 s']
+    """
+    drawn = set()
+    for number in POSES.keys() & last.keys():
+        t, range_mm = last[number]
+        plain = "echo" if range_mm < NO_ECHO_MM else "no echo"
+        drawn.add(_LABEL[held[number]] if number in held else plain)
+        if moment - t > FRESH_S:
+            drawn.add(_OLD)
+    return [name for name in _RING if name in drawn]
+
+
 def _draw_ring(
     name: str, moment: float, since: float, last: dict[int, tuple[float, int]], held: dict[int, str]
 ) -> Figure:
@@ -404,16 +430,12 @@ def _draw_ring(
         axes.grid(color=_GRID, linewidth=0.6)
         axes.set_axisbelow(True)
         axes.set_title(ring_title(name, moment, since), fontsize=11, color=_INK, pad=18)
-        handles = [
-            Patch(color=_LINE, alpha=0.6, label="echo"),
-            Patch(color=_SILENT, alpha=0.3, label="no echo"),
-            Patch(color=_LINE, alpha=0.2, label=f"older than {FRESH_S} s"),
-            *(
-                Patch(color=_COLOUR[kind], alpha=0.4, label=_LABEL[kind])
-                for kind in sorted(set(held.values()))
-            ),
-        ]
-        _legend(figure, handles, len(handles))
+        names = ring_legend(moment, last, held)
+        _legend(
+            figure,
+            [Patch(color=_RING[name][0], alpha=_RING[name][1], label=name) for name in names],
+            len(names),
+        )
     return figure
 
 

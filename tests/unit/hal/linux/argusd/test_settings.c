@@ -53,6 +53,18 @@ void test_forms_of_a_line(void) {
     TEST_ASSERT_EQUAL_INT(0, settings.line[SETTINGS_baud]);
 }
 
+void test_a_remark_begins_behind_a_blank(void) {
+    TEST_ASSERT_TRUE_MESSAGE(read_text("\xEF\xBB\xBF[argus]\nstep_mm = 100\t;why\n;step_mm = 1\n #no\n"),
+                             message);
+    TEST_ASSERT_EQUAL_INT32(100, settings.config.step_mm);
+    refused("step_mm = 100;why\n", "a.conf:1: step_mm = '100;why': give a whole number");
+    refused("step_mm ;= 100\n", "a.conf:1: malformed line");
+    refused("step_mm = ; 100\n", "a.conf:1: step_mm = '': give a whole number");
+    refused("= 100\n", "a.conf:1: unknown key ''");
+    refused("step_mm = 100 : 200\n", "a.conf:1: step_mm = '100 : 200': give a whole number");
+    refused("\n\xEF\xBB\xBFstep_mm = 100\n", "a.conf:2: unknown key ");
+}
+
 // The default of a number that follows the robot is a word.
 void test_a_number_or_auto(void) {
     TEST_ASSERT_TRUE_MESSAGE(read_text("speed_mm_s = 150\nobject_range_mm = auto\n"), message);
