@@ -42,7 +42,7 @@ endif()
 # libargus_sim.so: the emulator's echo model and its sub-steps in C. Neither contraction nor sincos, so that every number is the one that
 # Python forms; the other options change no result, since nobody looks at errno or at the exception flags.
 add_library(argus_sim SHARED hil_sim/sonar/kernel.c hil_sim/robot/report.c hil_sim/robot/ring.c
-                              hil_sim/robot/tick.c hil_sim/sil/loop.c hil_sim/world/body.c
+                              hil_sim/robot/tick.c hil_sim/sil/loop.c hil_sim/sil/sightings.c hil_sim/world/body.c
                               hil_sim/world/moving.c)
 target_compile_options(argus_sim PRIVATE ${ARGUS_STRICT} -ffp-contract=off -fno-builtin-sin -fno-builtin-cos
                                          -fno-math-errno -fno-trapping-math $<$<CONFIG:Release>:-O3>)

@@ -13,7 +13,7 @@ from hil_sim.errors import SimError
 
 LIBRARY_VARIABLE: Final = "ARGUS_SIM_KERNEL"
 """Names the library to load, or is `off`."""
-VERSION: Final = 6
+VERSION: Final = 7
 _ROOT: Final = Path(__file__).resolve().parents[1]
 _PLACES: Final = (
     Path(__file__).parent / "sonar/libargus_sim.so",  # in a package
@@ -39,6 +39,7 @@ _FUNCTIONS: Final[dict[str, tuple[Any, tuple[Any, ...]]]] = {
     "argus_sim_run": (ctypes.c_bool, (ctypes.c_void_p, ctypes.c_double, ctypes.c_double)),
     "argus_sim_loop": (None, (ctypes.c_void_p, ctypes.c_double)),
     "argus_sim_loop_size": (ctypes.c_size_t, ()),
+    "argus_sim_sightings_size": (ctypes.c_size_t, ()),
     "argus_sim_echo_ping": (
         ctypes.c_int32,
         (_HANDLE, ctypes.c_int32, *_PLACE, ctypes.c_double, ctypes.c_double, ctypes.c_void_p),

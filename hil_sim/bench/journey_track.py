@@ -11,14 +11,18 @@ from dataclasses import dataclass, field
 from typing import Any, Final
 
 import numpy as np
+import numpy.typing as npt
 
 from hil_sim.bench.journey import Case, mission_of, parse_id
 from hil_sim.bench.journey_course import length_mm
 from hil_sim.bench.judge import Track, judge
 from hil_sim.bench.plan import without_faults
-from hil_sim.sil import Collision, Mission, Outcome, Sighting, Sil, run
-from hil_sim.tables.robot import robot_table
-from hil_sim.world.body import BodyModel
+from hil_sim.core.library import mode_name
+from hil_sim.robot.chassis import wrapped
+from hil_sim.sil import Collision, Mission, Outcome, Sighting, Sightings, Sil, run
+from hil_sim.sil.sightings import Table
+from hil_sim.tables.robot import BodyShape, robot_table
+from hil_sim.world.body import BodyModel, distances_mm
 from hil_sim.world.model import Floats, Pose, World
 from hil_sim.world.moving import MovingSolids, Walker
 
@@ -39,12 +43,15 @@ _AHEAD_DEG: Final = 50.0
 """So far off the heading the forward sonars look."""
 _STANDS_MM: Final = 1.0
 _PATH_MM: Final = 200.0
+_ROUNDED_MM: Final = 2.0
+"""By which the distance of two spots in whole millimetres may be more than the way between them."""
 _RUNS_MM_S, _RESTS_MM_S = 50.0, 5.0
 _TOUCH_MM: Final = robot_table().body.reach_mm + 5.0
 """No part of the body is further from its centre."""
 
 Record = dict[str, Any]
 Spot = tuple[int, int]
+Places = npt.NDArray[np.intp]
 
 
 @dataclass
@@ -55,8 +62,6 @@ class People:
     at: list[tuple[float, float]] = field(default_factory=list)
     stands_s: list[float] = field(default_factory=list)
     seen_s: list[float | None] = field(default_factory=list)
-    hits: int = 0
-    met: list[float] = field(default_factory=list)
 
     def note(self, t_s: float, robot: Pose, people: Sequence[tuple[float, float]], walls: Floats) -> None:
         """Take where people are at a moment; walls: what hides them."""
@@ -98,94 +103,65 @@ def is_seen(robot: Pose, at: tuple[float, float], walls: Floats) -> bool:
     return not bool(((ends[0] * ends[1] < 0) & (sides[0] * sides[1] < 0)).any())
 
 
-@dataclass
-class Diary:
-    """What is noted with each SIP. Pass it as `trace`.
+class Company:
+    """Watches the people about. Pass it as `trace` of a mission with people; met: when one was met ahead."""
 
-    stops: where the robot came to rest, having moved faster than 50 mm/s. looks: where it began to look. closest_mm:
-    the smallest distance of the body from a wall or another solid that stands, ahead in free driving. early_mm: the
-    way driven in the first 330 s.
-    """
-
-    track: Track = field(default_factory=Track)
-    path: list[Spot] = field(default_factory=list)
-    stops: list[Spot] = field(default_factory=list)
-    looks: list[Spot] = field(default_factory=list)
-    modes: dict[str, float] = field(default_factory=dict)
-    people: People = field(default_factory=People)
-    turned_deg: float = 0.0
-    closest_mm: float | None = None
-    early_mm: float = 0.0
-    _mode: str = ""
-    _t_s: float = 0.0
-    _heading_deg: float | None = None
-    _runs: bool = False
-    _body: BodyModel | None = None
-    _clear: tuple[float, float, float] | None = None
+    def __init__(self) -> None:
+        self.met: list[float] = []
+        self._people = People()
+        self._hits = 0
 
     def __call__(self, sil: Sil, sighting: Sighting) -> None:
-        """Take a SIP."""
-        self.track(sil, sighting)
-        spot = (round(sil.robot.chassis.x), round(sil.robot.chassis.y))
-        marks = len(self.stops), len(self.looks)
-        self._note_mode(sil.mode, sighting.t_s, spot)
-        if sighting.t_s <= EARLY_S:
-            self.early_mm = sil.robot.chassis.travelled_mm
-        self._note_turn(sil.robot.chassis.th)
-        self._note_stop(abs(sil.robot.drive.v), spot)
-        self._note_way(spot, (len(self.stops), len(self.looks)) != marks)
-        if sil.mode == FREE and sil.robot.drive.v > _RESTS_MM_S:
-            self._note_clearance(sil)
-        if isinstance(sil.robot.moving, MovingSolids):
-            self._note_people(sil, sil.robot.moving, sighting.t_s)
-
-    def _note_people(self, sil: Sil, moving: MovingSolids, t_s: float) -> None:
         """Judge the contacts since the SIP before by what was there then."""
+        moving = sil.robot.moving
+        assert isinstance(moving, MovingSolids)
         pose = sil.robot.chassis.pose
-        hits = sil.robot.hits[self.people.hits :]
-        self.people.met += [
-            h.t_s for h in hits if not h.struck and self.people.is_met_ahead(h, pose.heading_deg)
-        ]
-        self.people.hits += len(hits)
+        hits = sil.robot.hits[self._hits :]
+        self.met += [h.t_s for h in hits if not h.struck and self._people.is_met_ahead(h, pose.heading_deg)]
+        self._hits += len(hits)
         walkers = [(a.x, a.y) for a in moving.actors if isinstance(a, Walker)]
-        self.people.note(t_s, pose, walkers, sil.world.segments)
+        self._people.note(sighting.t_s, pose, walkers, sil.world.segments)
 
-    def _note_mode(self, mode: str, t_s: float, spot: Spot) -> None:
-        before = self._mode or mode
-        self.modes[before] = self.modes.get(before, 0.0) + t_s - self._t_s
-        if mode == LOOKING != self._mode:
-            self.looks.append(spot)
-        self._mode, self._t_s = mode, t_s
 
-    def _note_way(self, spot: Spot, marked: bool) -> None:
-        """Note where it is each 200 mm, and where it stops or looks: the way goes through what is marked on it."""
-        if not self.path or math.dist(self.path[-1], spot) >= _PATH_MM or (marked and spot != self.path[-1]):
-            self.path.append(spot)
+@dataclass(frozen=True)
+class Diary:
+    """What a record tells of the way.
 
-    def _note_turn(self, heading_deg: float) -> None:
-        if self._heading_deg is not None:
-            self.turned_deg += abs(heading_deg - self._heading_deg)
-        self._heading_deg = heading_deg
+    path: where it was each 200 mm, and where it stopped or looked. stops: where it came to rest, having moved faster
+    than 50 mm/s. looks: where it began to look. closest_mm: the smallest distance of the body from a wall or another
+    solid that stands, ahead in free driving. early_mm: the way driven in the first 330 s.
+    """
 
-    def _note_stop(self, speed_mm_s: float, spot: Spot) -> None:
-        if self._runs and speed_mm_s <= _RESTS_MM_S:
-            self.stops.append(spot)
-            self._runs = False
-        self._runs = self._runs or speed_mm_s > _RUNS_MM_S
+    path: list[Spot]
+    stops: list[Spot]
+    looks: list[Spot]
+    modes_s: dict[str, float]
+    turned_deg: float
+    closest_mm: float | None
+    early_mm: float
 
-    def _note_clearance(self, sil: Sil) -> None:
-        """Measure only where the closest so far may be undercut: no solid comes nearer than the body goes."""
-        chassis = sil.robot.chassis
-        if self._clear is not None and self.closest_mm is not None:
-            clear, driven, turned = self._clear
-            reach = math.radians(self.turned_deg - turned) * robot_table(sil.mission.robot).body.reach_mm
-            if clear - (chassis.travelled_mm - driven) - reach > self.closest_mm:
-                return
-        if self._body is None:
-            self._body = BodyModel(sil.world, None, robot_table(sil.mission.robot).body)
-        clear = self._body.clearance_mm(chassis.pose)
-        self._clear = clear, chassis.travelled_mm, self.turned_deg
-        self.closest_mm = clear if self.closest_mm is None else min(self.closest_mm, clear)
+    @classmethod
+    def of(cls, rows: Table, world: World, body: BodyShape) -> Diary:
+        """Return it of the rows of a mission (hil_sim.sil.ROW)."""
+        names = np.array([mode_name(number) for number in range(int(rows["mode"].max(initial=0)) + 1)])
+        mode = names[rows["mode"]]
+        t_s = rows["t_ms"] / 1000
+        spots = np.stack([np.rint(rows["true_x"]), np.rint(rows["true_y"])], axis=-1).astype(int)
+        stops, looks = _stops(abs(rows["v"])), _begins(mode == LOOKING)
+        turned = np.cumsum(abs(np.diff(rows["th"], prepend=rows["th"][:1])))
+        free = np.flatnonzero((mode == FREE) & (rows["v"] > _RESTS_MM_S))
+        before = rows["mode"][np.arange(-1, len(rows) - 1).clip(0)]
+        spent_s = np.bincount(before, np.diff(t_s, prepend=0.0))
+        way = rows["travelled_mm"]
+        return cls(
+            [_spot(spots[k]) for k in _path(spots, way, np.union1d(stops, looks))],
+            [_spot(spots[k]) for k in stops],
+            [_spot(spots[k]) for k in looks],
+            {str(names[k]): float(spent_s[k]) for k in set(before.tolist())},
+            float(turned[-1]) if len(turned) else 0.0,
+            _closest_mm(rows[free], way[free] + np.radians(turned[free]) * body.reach_mm, world, body),
+            float(way[t_s <= EARLY_S][-1:].sum()),
+        )
 
     def fields(self) -> Record:
         """Return what goes into a record."""
@@ -195,31 +171,82 @@ class Diary:
             "turned_deg": round(self.turned_deg, 1),
             "closest_mm": None if self.closest_mm is None else round(self.closest_mm, 1),
             "early_mm": round(self.early_mm, 1),
-            "modes_s": {name: round(value, 1) for name, value in sorted(self.modes.items())},
+            "modes_s": {name: round(value, 1) for name, value in sorted(self.modes_s.items())},
             "path": self.path,
             "stops_at": self.stops,
             "looks_at": self.looks,
         }
 
 
+def _spot(place: Places) -> Spot:
+    x, y = place.tolist()
+    return x, y
+
+
+def _begins(holds: npt.NDArray[np.bool_]) -> Places:
+    """Where something begins to hold."""
+    return np.flatnonzero(holds & ~np.concatenate([[False], holds[:-1]]))
+
+
+def _stops(speed_mm_s: Floats) -> Places:
+    """Where the robot came to rest, having moved."""
+    marks = np.flatnonzero((speed_mm_s > _RUNS_MM_S) | (speed_mm_s <= _RESTS_MM_S))
+    return marks[_begins(speed_mm_s[marks] <= _RESTS_MM_S)][
+        int(len(marks) > 0 and speed_mm_s[marks[0]] <= _RESTS_MM_S) :
+    ]
+
+
+def _path(spots: Places, way_mm: Floats, marked: Places) -> list[int]:
+    """Where the path is noted: as far as it goes on, nothing is nearer to the last spot than the way driven."""
+    path = [0] if len(spots) else []
+    marks = [int(k) for k in marked if k > 0] + [len(spots)]
+    k = 0
+    while path:
+        k = max(k + 1, int(np.searchsorted(way_mm, way_mm[path[-1]] + _PATH_MM - _ROUNDED_MM)))
+        if k >= marks[0]:
+            k = marks.pop(0)
+            if k == len(spots):
+                break
+            if _spot(spots[k]) != _spot(spots[path[-1]]):
+                path.append(k)
+        elif math.dist(spots[k], spots[path[-1]]) >= _PATH_MM:
+            path.append(k)
+    return path
+
+
+def _closest_mm(rows: Table, moved_mm: Floats, world: World, shape: BodyShape) -> float | None:
+    """The smallest clearance. moved_mm: no point of the body has moved further by then, so that it is measured only
+    where the smallest so far may be undercut."""
+    body = BodyModel(world, None, shape)
+    closest = math.inf
+    k = 0
+    while k < len(rows):
+        clear = body.clearance_mm(Pose(rows["true_x"][k], rows["true_y"][k], wrapped(rows["th"][k])))
+        closest = min(closest, clear)
+        k = max(k + 1, int(np.searchsorted(moved_mm, moved_mm[k] + clear - closest)))
+    return closest if len(rows) else None
+
+
 def run_case(case: Case) -> tuple[Record, Outcome]:
     """Run a case; return its record and, for callers that want more, all that came of it."""
     begin = time.perf_counter()
     mission = mission_of(case)
-    diary = Diary()
-    sil = Sil(mission, trace=diary)
+    sightings, company = Sightings(), Company()
+    sil = Sil(mission, trace=company if mission.movers else None, sightings=sightings)
     outcome = sil.run()
+    seen = sightings.seen
     people = take_people(outcome, sil.world)
-    met = sum(hit.t_s in diary.people.met for hit in people)
+    met = sum(hit.t_s in company.met for hit in people)
     twin = None
     if mission.faults and any(not hit.struck for hit in outcome.collisions):
         twin = run(without_faults(mission))
         take_people(twin, sil.world)
-    record = judge(outcome, diary.track, twin)
+    record = judge(outcome, Track.of(seen), twin)
     record |= {"met_ahead": met, "walked_into": len(people) - met}
     record["looking_s"] = record.pop("verifying_s")
     record["stop_commands"] = record.pop("stops")
-    record |= _arrival(sil, mission) | diary.fields()
+    record |= _arrival(sil, mission)
+    record |= Diary.of(seen.rows, sil.world, robot_table(mission.robot).body).fields()
     record["energy_j"] = round(sil.robot.energy.total_j, 1)
     record["faulty"] = list(mission.faults)
     record["limit_s"] = mission.limit_s
@@ -231,17 +258,17 @@ def take_people(outcome: Outcome, world: World) -> list[Collision]:
 
     The same mission without the fault meets people elsewhere, so chance would say which are the fault's.
     """
-    people = [hit for hit in outcome.collisions if not hit.struck and _from_walls_mm(world, hit) > _TOUCH_MM]
+    people = [
+        hit
+        for hit in outcome.collisions
+        if not hit.struck and distances_mm(world.segments, hit.x, hit.y).min() > _TOUCH_MM
+    ]
     outcome.collisions = [hit for hit in outcome.collisions if hit not in people]
     return people
 
 
-def _from_walls_mm(world: World, hit: Collision) -> float:
-    """Distance of the robot's centre from what stands."""
-    x1, y1, x2, y2 = world.segments.T
-    dx, dy = x2 - x1, y2 - y1
-    along = np.clip(((hit.x - x1) * dx + (hit.y - y1) * dy) / (dx * dx + dy * dy), 0.0, 1.0)
-    return float(np.hypot(x1 + along * dx - hit.x, y1 + along * dy - hit.y).min())
+def _is_off_walls(world: World, hit: Collision) -> bool:
+    return bool(distances_mm(world.segments, hit.x, hit.y).min() > _TOUCH_MM)
 
 
 def _arrival(sil: Sil, mission: Mission) -> Record:

@@ -9,8 +9,10 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any, Final
 
-from hil_sim.bench.witness import contradicted, fired, is_visible
-from hil_sim.sil import Collision, FaultTruth, Outcome, Sighting, Sil
+import numpy as np
+
+from hil_sim.bench.witness import Pings
+from hil_sim.sil import Collision, FaultTruth, Outcome, Seen
 from hil_sim.sonar.params import NO_ECHO_MM
 from hil_sim.tables.robot import robot_table
 
@@ -51,30 +53,38 @@ Change = tuple[float, str, str]
 
 @dataclass
 class Track:
-    """What the judge notes with each SIP: way and driving time, what faulty sonars report, and all that was seen."""
+    """What the judge knows of each SIP: way and driving time, what faulty sonars report, and all that was seen."""
 
-    t_s: list[float] = field(default_factory=list)
-    driven_mm: list[float] = field(default_factory=list)
-    driving_s: list[float] = field(default_factory=list)
-    visible_s: dict[int, list[float]] = field(default_factory=dict)
+    t_s: list[float]
+    driven_mm: list[float]
+    driving_s: list[float]
+    visible_s: dict[int, list[float]]
     stuck_mm: dict[int, set[int]] = field(default_factory=dict)
-    sightings: list[Sighting] = field(default_factory=list)
+    pings: Pings = field(default_factory=Pings)
 
-    def __call__(self, sil: Sil, sighting: Sighting) -> None:
-        """Take a SIP; pass the track itself as `trace`."""
-        robot = sil.robot
-        before_t = self.t_s[-1] if self.t_s else sighting.t_s
-        before = self.driving_s[-1] if self.driving_s else 0.0
-        moves = abs(robot.drive.v) > _MOVING_MM_S or abs(robot.drive.w) > _TURNING_DEG_S
-        self.t_s.append(sighting.t_s)
-        self.sightings.append(sighting)
-        self.driven_mm.append(robot.chassis.travelled_mm)
-        self.driving_s.append(before + (sighting.t_s - before_t if moves else 0.0))
-        for reading in sighting.readings:
-            if reading.fault == "stuck":
-                self.stuck_mm.setdefault(reading.number, set()).add(reading.range_mm)
-            if reading.fault is not None and is_visible(reading):
-                self.visible_s.setdefault(reading.number, []).append(reading.t_ms / 1000)
+    @classmethod
+    def of(cls, seen: Seen) -> Track:
+        """Return what is known once a mission is over."""
+        rows, pings = seen.rows, Pings.of(seen)
+        t_s = rows["t_ms"] / 1000
+        moves = (abs(rows["v"]) > _MOVING_MM_S) | (abs(rows["w"]) > _TURNING_DEG_S)
+        driving_s = np.cumsum(np.where(moves, np.diff(t_s, prepend=t_s[:1]), 0.0))
+        shown = pings.readings[pings.is_visible()]
+        stuck = pings.readings[pings.of_kind("stuck")]
+        return cls(
+            t_s.tolist(),
+            rows["travelled_mm"].tolist(),
+            driving_s.tolist(),
+            {
+                int(n): (shown["t_ms"][shown["number"] == n] / 1000).tolist()
+                for n in set(shown["number"].tolist())
+            },
+            {
+                int(n): set(stuck["range_mm"][stuck["number"] == n].tolist())
+                for n in set(stuck["number"].tolist())
+            },
+            pings,
+        )
 
     def driving_at(self, t_s: float) -> float:
         """Return the time in motion up to a moment."""
@@ -222,14 +232,14 @@ def _readings_in_time(truth: FaultTruth, track: Track, end_s: float) -> int:
     """All that the sonar reported in that time, right or not; of one that is silent its slots."""
     if truth.kind == "silent":
         return _visible_in_time(truth, track, end_s)
-    return fired(track.sightings, truth.sonar, *_in_time(truth, end_s))
+    return track.pings.fired(truth.sonar, *_in_time(truth, end_s))
 
 
 def _contradicted_in_time(truth: FaultTruth, track: Track, end_s: float) -> int:
     """Of the visible readings in that time, those that another sonar contradicts; a missing one needs none."""
     if truth.kind == "silent":
         return _visible_in_time(truth, track, end_s)
-    return contradicted(track.sightings, truth.sonar, *_in_time(truth, end_s))
+    return track.pings.contradicted(truth.sonar, *_in_time(truth, end_s))
 
 
 def _visible_count(truth: FaultTruth, track: Track, end_s: float) -> int:

@@ -4,20 +4,17 @@
 from __future__ import annotations
 
 import math
-from bisect import bisect_left, bisect_right
-from collections.abc import Sequence
-from itertools import pairwise
+from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
 import numpy.typing as npt
 
-from hil_sim.robot.interfaces import SonarReading
-from hil_sim.sil import Sighting
+from hil_sim.sil import READING, Seen
 from hil_sim.sil.noted import VISIBLE_MM, VISIBLE_PART
-from hil_sim.sonar.params import NO_ECHO_MM, transducer_pose
+from hil_sim.sonar.params import NO_ECHO_MM
 from hil_sim.tables.robot import robot_table
-from hil_sim.world.model import Pose
+from hil_sim.world.model import Floats
 
 # One place and one bearing are for the observer what they are for the peers (firmware/awareness/evidence_peers.c,
 # evidence_seen.c and evidence_pair.c; a test compares them).
@@ -32,74 +29,92 @@ AGREE_PART: Final = 0.05
 
 _LISTED_S: Final = 0.5
 _T, _X, _Y, _BEARING, _RANGE = range(5)
-Table = npt.NDArray[np.float64]
+Flags = npt.NDArray[np.bool_]
 
 
-def is_visible(reading: SonarReading) -> bool:
-    """Whether a reading is off by more than max(100 mm, 5 %)."""
-    return abs(reading.range_mm - reading.true_mm) > max(VISIBLE_MM, VISIBLE_PART * reading.true_mm)
+@dataclass(frozen=True)
+class Pings:
+    """All readings of a mission with the SIPs that list them.
 
-
-def fired(sightings: Sequence[Sighting], sonar: int, begin_s: float, end_s: float) -> int:
-    """Return how many readings a sonar gave from begin to end."""
-    return sum(
-        reading.number == sonar and begin_s <= reading.t_ms / 1000 <= end_s
-        for sighting in _seen(sightings, begin_s, end_s)
-        for reading in sighting.readings
-    )
-
-
-def contradicted(sightings: Sequence[Sighting], sonar: int, begin_s: float, end_s: float) -> int:
-    """Return how many visible readings of a faulty sonar, begin to end, a sound reading of another contradicts.
-
-    Both from one place on one bearing, at most 40 s apart, in whichever order, and both made by `end_s`. `sightings`:
-    of the whole mission in order of time. Cost: the product of both counts, about 100 by 3,500 for 30 s.
+    t_s, places: of each SIP, in order of time: when it was made, and where the robot was (x, y in mm, degrees), (n, 3).
+    readings: of the type `hil_sim.sil.READING`. row: of each reading the SIP that lists it. kinds: of faults, by their
+    number.
     """
-    own, others = _pings(_seen(sightings, begin_s - AGE_S, end_s), sonar)
-    own = own[(own[:, _T] >= begin_s) & (own[:, _T] <= end_s)]
-    others = others[others[:, _T] <= end_s]
-    return sum(bool(_contradicts(ping, others).any()) for ping in own)
+
+    t_s: Floats = field(default_factory=lambda: np.zeros(0))
+    places: Floats = field(default_factory=lambda: np.zeros((0, 3)))
+    readings: npt.NDArray[np.void] = field(default_factory=lambda: np.zeros(0, READING))
+    row: npt.NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, np.intp))
+    kinds: tuple[str | None, ...] = (None,)
+
+    @classmethod
+    def of(cls, seen: Seen) -> Pings:
+        """Return those of what was seen."""
+        rows = seen.rows
+        row, readings = seen.listed()
+        places = np.stack([rows["x"], rows["y"], rows["heading"]], axis=-1)
+        return cls(rows["t_ms"] / 1000, places, readings, row, seen.kinds)
+
+    def is_visible(self) -> Flags:
+        """Which readings are a fault's and off by more than max(100 mm, 5 %)."""
+        off = abs(self.readings["range_mm"] - self.readings["true_mm"])
+        limit = np.maximum(VISIBLE_MM, VISIBLE_PART * self.readings["true_mm"])
+        return np.asarray((self.readings["kind"] > 0) & (off > limit))
+
+    def of_kind(self, kind: str) -> Flags:
+        """Which readings are of a kind of fault."""
+        number = self.kinds.index(kind) if kind in self.kinds else -1
+        return np.asarray(self.readings["kind"] == number)
+
+    def fired(self, sonar: int, begin_s: float, end_s: float) -> int:
+        """Return how many readings a sonar gave from begin to end."""
+        first, last = self._listing(begin_s, end_s)
+        t_s = self.readings["t_ms"] / 1000
+        own = (self.readings["number"] == sonar) & (begin_s <= t_s) & (t_s <= end_s)
+        return int(np.count_nonzero(own & (first <= self.row) & (self.row < last)))
+
+    def contradicted(self, sonar: int, begin_s: float, end_s: float) -> int:
+        """Return how many visible readings of a faulty sonar, begin to end, a sound reading of another contradicts.
+
+        Both from one place on one bearing, at most 40 s apart, in whichever order, and both made by `end_s`. Cost: the
+        product of both counts, about 100 by 3,500 for 30 s.
+        """
+        first, last = self._listing(begin_s - AGE_S, end_s)
+        t_s = self.readings["t_ms"] / 1000
+        here = (first < self.row) & (self.row < last) & (t_s <= end_s)
+        is_own = self.readings["number"] == sonar
+        own = self._made(here & is_own & self.is_visible() & (t_s >= begin_s))
+        others = self._made(here & ~is_own & (self.readings["kind"] == 0))
+        return sum(bool(_contradicts(ping, others).any()) for ping in own)
+
+    def _listing(self, begin_s: float, end_s: float) -> tuple[int, int]:
+        """The SIPs that may list what was made from begin to end. One comes up to half a second after it, and the
+        last one before shows where the robot was."""
+        first = int(np.searchsorted(self.t_s, begin_s, "left"))
+        return max(0, first - 1), int(np.searchsorted(self.t_s, end_s + _LISTED_S, "right"))
+
+    def _made(self, which: Flags) -> Floats:
+        """Of readings that another SIP came before: time, place of the sonar, bearing, range."""
+        readings, row = self.readings[which], self.row[which]
+        t_s = readings["t_ms"] / 1000
+        x, y, heading = self._places_at(row, t_s)
+        mounts = np.array([(m.x_mm, m.y_mm, m.heading_deg) for m in robot_table().mounts])[readings["number"]]
+        c, s = np.cos(np.radians(heading)), np.sin(np.radians(heading))
+        mount_x, mount_y, mount_deg = mounts.reshape(-1, 3).T
+        at_x, at_y = x + mount_x * c - mount_y * s, y + mount_x * s + mount_y * c
+        return np.stack([t_s, at_x, at_y, heading + mount_deg, readings["range_mm"]], axis=-1)
+
+    def _places_at(self, row: npt.NDArray[np.intp], t_s: Floats) -> Floats:
+        """Where the robot was at moments between a SIP and the one before, or about them: x, y, heading."""
+        before, now = self.places[row - 1], self.places[row]
+        span = self.t_s[row] - self.t_s[row - 1]
+        passed = np.clip((t_s - self.t_s[row - 1]) / np.where(span > 0, span, 1.0), 0.0, 1.0)
+        way = now - before
+        way[:, 2] = (way[:, 2] + 180) % 360 - 180
+        return (before + np.where(span > 0, passed, 1.0)[:, np.newaxis] * way).T
 
 
-def _seen(sightings: Sequence[Sighting], begin_s: float, end_s: float) -> Sequence[Sighting]:
-    """Those that may list what was made from begin to end. A SIP comes up to half a second after it, and the last
-    one before shows where the robot was."""
-    times = [one.t_s for one in sightings]
-    first = bisect_left(times, begin_s)
-    return sightings[max(0, first - 1) : bisect_right(times, end_s + _LISTED_S)]
-
-
-def _pings(sightings: Sequence[Sighting], sonar: int) -> tuple[Table, Table]:
-    """The visible readings of a faulty sonar, and the sound ones of the others: time, place, bearing, range."""
-    own, others = [], []
-    for before, now in pairwise(sightings):
-        for reading in now.readings:
-            if reading.number == sonar:
-                if reading.fault is not None and is_visible(reading):
-                    own.append(_ping(reading, before, now))
-            elif reading.fault is None:
-                others.append(_ping(reading, before, now))
-    return np.array(own).reshape(-1, 5), np.array(others).reshape(-1, 5)
-
-
-def _ping(reading: SonarReading, before: Sighting, now: Sighting) -> tuple[float, ...]:
-    at = transducer_pose(robot_table().mounts[reading.number], _between(before, now, reading.t_ms / 1000))
-    return reading.t_ms / 1000, at.x_mm, at.y_mm, at.heading_deg, reading.range_mm
-
-
-def _between(before: Sighting, now: Sighting, t_s: float) -> Pose:
-    """The pose at a moment between two SIPs, or about them."""
-    span = now.t_s - before.t_s
-    part = min(1.0, max(0.0, (t_s - before.t_s) / span)) if span > 0 else 1.0
-    turn = (now.pose.heading_deg - before.pose.heading_deg + 180) % 360 - 180
-    return Pose(
-        before.pose.x_mm + part * (now.pose.x_mm - before.pose.x_mm),
-        before.pose.y_mm + part * (now.pose.y_mm - before.pose.y_mm),
-        before.pose.heading_deg + part * turn,
-    )
-
-
-def _contradicts(own: Table, others: Table) -> npt.NDArray[np.bool_]:
+def _contradicts(own: Floats, others: Floats) -> Flags:
     """Which of the others saw something else than one ping says, from its place and on its bearing."""
     bearing = math.radians(own[_BEARING])
     dx, dy = own[_X] - others[:, _X], own[_Y] - others[:, _Y]

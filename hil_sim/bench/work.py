@@ -17,7 +17,7 @@ from hil_sim.bench.judge import Track, judge
 from hil_sim.bench.plan import Case, mission_of, parse_id, without_faults
 from hil_sim.core.library import LIBRARY_VARIABLE, library
 from hil_sim.errors import SimError
-from hil_sim.sil import Outcome, run
+from hil_sim.sil import Outcome, Sightings, run
 
 Record = dict[str, Any]
 
@@ -26,12 +26,12 @@ def run_case(case: Case) -> tuple[Record, Outcome]:
     """Run a case; return its record and, for callers that want more, all that came of it."""
     begin = time.perf_counter()
     mission = mission_of(case)
-    track = Track()
-    outcome = run(mission, trace=track)
+    sightings = Sightings()
+    outcome = run(mission, sightings=sightings)
     twin = None
     if mission.faults and any(not hit.struck for hit in outcome.collisions):
         twin = run(without_faults(mission))
-    record = head(case) | judge(outcome, track, twin)
+    record = head(case) | judge(outcome, Track.of(sightings.seen), twin)
     record["wall_s"] = round(time.perf_counter() - begin, 3)
     return record, outcome
 

@@ -163,10 +163,6 @@ class Ticks:
         """Return the readings that came in since the last call."""
         return self._ring.take_heard()
 
-    def shown(self) -> Sequence[SonarReading]:
-        """Return the same, and leave them."""
-        return self._ring.take_heard(keep=True)
-
     def hold(self, readings: Sequence[Reading]) -> None:
         """Let C put these into the next SIP."""
         self._ring.hold(readings)

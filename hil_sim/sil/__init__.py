@@ -13,10 +13,13 @@ True
 from hil_sim.sil.line import Packet
 from hil_sim.sil.mission import Frozen, Mission
 from hil_sim.sil.outcome import Collision, Event, FaultTruth, Outcome
-from hil_sim.sil.run import REACHED_MM, SONARS, Sighting, Sil, Trace, run
+from hil_sim.sil.run import REACHED_MM, SONARS, Sil, Trace, run
+from hil_sim.sil.sightings import READING, ROW, Seen, Sighting, Sightings
 
 __all__ = [
     "REACHED_MM",
+    "READING",
+    "ROW",
     "SONARS",
     "Collision",
     "Event",
@@ -25,7 +28,9 @@ __all__ = [
     "Mission",
     "Outcome",
     "Packet",
+    "Seen",
     "Sighting",
+    "Sightings",
     "Sil",
     "Trace",
     "run",

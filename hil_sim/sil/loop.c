@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The loop of one mission (run.py, line.py, server.py) in C, as long as what is due is plain; the rest is
 // Python's.
-#include "../robot/report.h"
+#include "sightings.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -47,13 +47,10 @@ typedef struct {
     void (*brief)(const void *core, uint8_t *bytes);
 } core_t;
 
-// Python's: a sub-step; the readings of a SIP; what else a SIP is of; a packet that the fault manager has
-// taken.
+// Python's: a sub-step; the fault manager has taken a SIP.
 typedef struct {
     void (*step)(void);
-    void (*hear)(void);
-    void (*look)(void);
-    void (*taken)(const uint8_t *data, int32_t length);
+    void (*taken)(void);
 } calls_t;
 
 enum { PULSE, SETV, MOVE, VEL, HEAD, ADSEL, COMMANDS };
@@ -62,6 +59,7 @@ typedef struct {
     parts_t *parts;
     core_t core;
     calls_t calls;
+    sightings_t *seen; // NULL: nobody wants to know
     report_t report;
     double vel_top;
     double now_ms, next_sip_ms, core_due_ms, brief_ms, verifying_ms, driving_ms;
@@ -74,6 +72,7 @@ typedef struct {
     line_t to_core, to_robot;
     uint8_t out[FRAME_MAX];
     int32_t out_length;
+    sighting_t made;
     int32_t events[ROWS * FIELDS];
     brief_t briefs[ROWS];
     uint8_t notes[NOTES];
@@ -159,8 +158,10 @@ static void to_manager(sil_t *const sil, const packet_t *const packet) {
     note(sil, packet, false);
     sil->core.receive(sil->core.core, (uint32_t)(int64_t)sil->now_ms, packet->data, (size_t)packet->length);
     serve_core(sil);
-    if (sil->traces) {
-        sil->calls.taken(packet->data, packet->length);
+    if (sil->seen != NULL &&
+        argus_sim_sighting_taken(sil->seen, sil->parts, sil->brief[0], packet->data, packet->length) &&
+        sil->traces) {
+        sil->calls.taken();
     }
 }
 
@@ -171,8 +172,8 @@ static void look_at_robot(sil_t *const sil) {
     if (fabs(drive->v) > moving_mm_s || fabs(drive->w) > turning_deg_s) {
         sil->driving_ms += (double)sil->sip_cycle_ms;
     }
-    if (sil->traces) {
-        sil->calls.look();
+    if (sil->seen != NULL) {
+        argus_sim_sighting_sent(sil->seen, &sil->made, sil->out, sil->out_length);
     }
 }
 
@@ -186,8 +187,8 @@ static void advance(sil_t *const sil) {
             sil->next_sip_ms += (double)sil->sip_cycle_ms;
             sil->sips++;
             sil->out_length = argus_sim_sip(sil->parts, &sil->report, sil->out);
-            if (sil->traces) {
-                sil->calls.hear();
+            if (sil->seen != NULL) {
+                sil->made = argus_sim_sighting(sil->seen, sil->parts);
             }
             sil->parts->ring->heard.count = 0;
         }
@@ -281,7 +282,8 @@ static double next_ms(sil_t *const sil) {
 static bool has_room(const sil_t *const sil) {
     return sil->notes_count <= NOTES / 2 && sil->events_count <= ROWS / 2 && sil->briefs_count <= ROWS / 2 &&
            sil->to_core.count <= HELD - ROOM && sil->to_robot.count <= HELD - ROOM &&
-           sil->parts->ring->heard.count < READINGS;
+           sil->parts->ring->heard.count < READINGS &&
+           (sil->seen == NULL || argus_sim_sightings_have_room(sil->seen));
 }
 
 // Whether all that is due can be done here, and there is room for what comes of it: of one SIP, not more.

@@ -15,6 +15,7 @@ from hil_sim.robot.report import other_flags
 from hil_sim.server.server import ArcosServer
 from hil_sim.sil.line import Line
 from hil_sim.sil.noted import NotedRobot
+from hil_sim.sil.sightings import ROW
 
 _HELD: Final = 128
 _NOTES: Final = 1 << 16
@@ -28,7 +29,6 @@ _D, _I, _L, _P, _U, _B = (
     ctypes.c_double, ctypes.c_int32, ctypes.c_int64, ctypes.c_void_p, ctypes.c_uint8, ctypes.c_bool,
 )  # fmt: skip
 _PLAIN: Final = ctypes.CFUNCTYPE(None)
-_TAKEN: Final = ctypes.CFUNCTYPE(None, _P, _I)
 COMMANDS: Final = ("PULSE", "SETV", "MOVE", "VEL", "HEAD", "ADSEL")
 """Those that C obeys."""
 
@@ -67,8 +67,8 @@ class State(ctypes.Structure):
     _fields_ = [
         ("parts", _P),
         *((name, _P) for name in ("core", "receive", "process", "transmit", "event", "brief_of")),
-        *((name, _PLAIN) for name in ("step", "hear", "look")),
-        ("taken", _TAKEN),
+        *((name, _PLAIN) for name in ("step", "taken")),
+        ("seen", _P),
         *((name, _D) for name in ("unit_mm", "idle_w", "sonar_w", "wheel_j_m", "full_v", "empty_v")),
         *((name, _D) for name in ("capacity_j", "internal_ohm")),
         *((name, _I) for name in ("turn", "flags", "motors", "still", "moving", "digout")),
@@ -84,6 +84,7 @@ class State(ctypes.Structure):
         ("to_robot", _Line),
         ("out", _U * _FRAME),
         ("out_length", _I),
+        ("made", _D * (ROW.itemsize // 8)),
         ("events", _I * (_ROWS * _FIELDS)),
         ("briefs", _Brief * _ROWS),
         ("notes", _U * _NOTES),
@@ -121,8 +122,7 @@ class Calls:
 class Loop:
     """The loop of one mission in C.
 
-    step: a sub-step, for which C asks. hear: take the readings of a SIP. look: the SIP goes on the line. taken: the
-    fault manager has taken a packet.
+    step: a sub-step, for which C asks. taken: the fault manager has taken a SIP.
     """
 
     def __init__(
@@ -130,9 +130,7 @@ class Loop:
         of: tuple[Core, NotedRobot, ArcosServer],
         *,
         step: Callable[[], None],
-        hear: Callable[[], None],
-        look: Callable[[], None],
-        taken: Callable[[bytes], None],
+        taken: Callable[[], None],
     ) -> None:
         found = native.library()
         assert found is not None
@@ -145,8 +143,7 @@ class Loop:
                 f"loop.c has {found.argus_sim_loop_size()} bytes, loop.py {ctypes.sizeof(State)}"
             )
         self._calls = Calls(state)
-        state.step, state.hear, state.look = (self._calls.take(call, _PLAIN) for call in (step, hear, look))
-        state.taken = self._calls.take(lambda at, size: taken(ctypes.string_at(at, size)), _TAKEN)
+        state.step, state.taken = (self._calls.take(call, _PLAIN) for call in (step, taken))
         for name, value in core.for_c().items():
             setattr(state, name, value)
         state.unit_mm = robot.unit_mm

@@ -14,6 +14,7 @@ from hil_sim.robot.interfaces import SonarReading
 from hil_sim.robot.robot import Robot
 from hil_sim.robot.ticks import Ticks
 from hil_sim.sil.outcome import Collision, FaultTruth
+from hil_sim.sonar.ring import SonarRing
 from hil_sim.world.model import Pose
 
 VISIBLE_MM: Final = 100.0
@@ -56,10 +57,10 @@ class NotedRobot(Robot):
         self.noted = tuple(readings)
         return readings
 
-    def note_readings(self) -> None:
-        """Note the readings that a loop in C puts into a SIP."""
-        ticks = self._in_c()
-        self.noted = tuple(ticks.shown()) if ticks is not None else ()
+    @property
+    def kinds(self) -> list[str | None]:
+        """Kinds of faults by the numbers that C writes; it grows with each new one."""
+        return self.ring.kinds if isinstance(self.ring, SonarRing) else [None]
 
     def _hit(self, moved_in: bool) -> None:
         super()._hit(moved_in)

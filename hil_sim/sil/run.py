@@ -7,9 +7,7 @@ import dataclasses
 import hashlib
 import math
 import struct
-from collections import deque
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import Final
 
@@ -19,7 +17,6 @@ from hil_sim.errors import InputError, SimError
 from hil_sim.faults.grammar import parse_fault
 from hil_sim.faults.kinds import Fault, LinkFault
 from hil_sim.faults.link import LinkFaults
-from hil_sim.robot.interfaces import SonarReading
 from hil_sim.scenario.build import assemble
 from hil_sim.server.quirks import server_kind
 from hil_sim.server.server import ArcosServer
@@ -29,6 +26,7 @@ from hil_sim.sil.mission import Mission
 from hil_sim.sil.noted import NotedFaults, NotedRobot
 from hil_sim.sil.outcome import Event, Outcome
 from hil_sim.sil.shared import shared_echoes, shared_world, sonar_params, stamp_of
+from hil_sim.sil.sightings import Sighting, Sightings
 from hil_sim.tables.robot import robot_table
 from hil_sim.world.model import Pose
 from hil_sim.world.physics import parse_physics
@@ -47,15 +45,6 @@ _IN_C: Final = (
 """What loop.c does instead; a class that does one of these otherwise is left to Python."""
 _WORTH_MS: Final = 50.0
 """For less than that it is not worth to change over to C."""
-
-
-@dataclass(frozen=True)
-class Sighting:
-    """What a SIP says, and the truth: the reading as reported, what no fault, noise and crosstalk would give."""
-
-    t_s: float
-    pose: Pose
-    readings: tuple[SonarReading, ...]
 
 
 Trace = Callable[["Sil", Sighting], None]
@@ -84,9 +73,13 @@ class Sil:
     traffic: a list to which every packet is added when it is handed over; None keeps none.
     """
 
-    def __init__(self, mission: Mission, *, trace: Trace | None = None) -> None:
+    def __init__(
+        self, mission: Mission, *, trace: Trace | None = None, sightings: Sightings | None = None
+    ) -> None:
+        """`trace`: called for each SIP, which costs some 20 us. `sightings`: takes each SIP, with less to be had."""
         self.mission = mission
         self.trace = trace
+        self._sightings = sightings if sightings is not None or trace is None else Sightings(keep=False)
         self.traffic: list[Packet] | None = None
         self.now_ms = 0.0
         self._stamp = stamp_of(mission.world)
@@ -103,7 +96,6 @@ class Sil:
         self.events: list[Event] = []
         self.health: list[list[tuple[float, str, str]]] = [[] for _ in range(max(SONARS, len(table.mounts)))]
         self._to_core, self._to_robot = Line(mission.baud), Line(mission.baud)
-        self._sightings: deque[tuple[bytes, Sighting]] = deque()
         self._digest = hashlib.sha256()
         self._core_due_ms = 0.0
         self._verifying, self._done = _codes()
@@ -119,7 +111,7 @@ class Sil:
     def _build_robot(self, given: Sequence[Fault]) -> NotedRobot:
         mission = self.mission
         params = sonar_params(mission.sonar)
-        return assemble(
+        robot = assemble(
             self.world,
             self.start,
             make=NotedRobot,
@@ -132,6 +124,9 @@ class Sil:
             echoes=shared_echoes(mission.world, self._stamp, params, mission.robot),
             make_faults=NotedFaults,
         )
+        if self._sightings is not None:
+            self._sightings.begin(robot.kinds)
+        return robot
 
     def _build_core(self) -> Core:
         mission = self.mission
@@ -163,13 +158,12 @@ class Sil:
         loop = Loop(
             (self.core, self.robot, self.server),
             step=self._step_robot,
-            hear=self._hear,
-            look=self._look,
             taken=self._taken,
         )
         state = loop.state
         state.verifying, (state.over_first, state.over_second) = self._verifying, self._done
         state.stops_at_goal = self.mission.stop_at_goal
+        state.seen = self._sightings.address if self._sightings is not None else None
         return loop
 
     def _run_loop(self, loop: Loop, end_ms: float) -> bool:
@@ -191,6 +185,8 @@ class Sil:
         state.brief_ms, state.verifying_ms = self._brief_ms, self._verifying_ms
         state.driving_ms, state.sips = self._driving_ms, server.sips
         state.traces = self.trace is not None
+        if self._sightings is not None:
+            self._sightings.make_room()
         state.brief[: len(self._brief)] = [*self._brief]
         state.to_core.put(self._to_core)
         state.to_robot.put(self._to_robot)
@@ -230,21 +226,11 @@ class Sil:
         if not self._loop.prepare():
             self._loop.state.stop = True
 
-    def _hear(self) -> None:
-        self.robot.note_readings()
-
-    def _look(self) -> None:
-        """A SIP goes on the line."""
-        assert self._loop is not None
-        state, robot = self._loop.state, self.robot
-        packet = bytes(state.out[: state.out_length])
-        self._sightings.append((packet, Sighting(robot.now_ms / 1000, robot.pose, robot.noted)))
-
-    def _taken(self, data: bytes) -> None:
-        """The fault manager has taken a packet."""
+    def _taken(self) -> None:
+        """The fault manager has taken a SIP."""
         assert self._loop is not None
         self._absorb(self._loop)
-        self._show(data)
+        self._show()
         if self.trace is None or self.traffic is not None:
             self._loop.state.stop = True
         self._prepare()
@@ -316,25 +302,21 @@ class Sil:
         robot = self.robot
         if abs(robot.drive.v) > _MOVING_MM_S or abs(robot.drive.w) > _TURNING_DEG_S:
             self._driving_ms += self.server.sip_cycle_ms
-        if self.trace is not None:
-            self._sightings.append((packet, Sighting(robot.now_ms / 1000, robot.pose, robot.noted)))
+        if self._sightings is not None:
+            self._sightings.sent(packet, robot, robot.noted)
 
     def _to_manager(self, data: bytes) -> None:
         now = int(self.now_ms)
         self._note(Packet(self.now_ms, False, data))
         self.core.receive(now, data)
         self._serve_core(now)
-        self._show(data)
+        if self._sightings is not None and self._sightings.taken(data, self.robot, self._brief[0]):
+            self._show()
 
-    def _show(self, data: bytes) -> None:
+    def _show(self) -> None:
         """Let the trace see what is known of the SIP that the fault manager has taken."""
-        while self._sightings and self.trace is not None:
-            packet, sighting = self._sightings[0]
-            if packet == data:
-                self.trace(self, sighting)
-            elif len(self._sightings) == 1:
-                break
-            self._sightings.popleft()
+        if self.trace is not None and self._sightings is not None:
+            self.trace(self, self._sightings.last)
 
     def _serve_core(self, now: int) -> None:
         core = self.core
@@ -437,6 +419,6 @@ class Sil:
         )
 
 
-def run(mission: Mission, *, trace: Trace | None = None) -> Outcome:
+def run(mission: Mission, *, trace: Trace | None = None, sightings: Sightings | None = None) -> Outcome:
     """Run a mission to its end."""
-    return Sil(mission, trace=trace).run()
+    return Sil(mission, trace=trace, sightings=sightings).run()

@@ -73,7 +73,7 @@ int32_t argus_sim_echo_range(echo_t *self, double x, double y, double heading_de
 uint32_t argus_sim_version(void);
 
 uint32_t argus_sim_version(void) {
-    return 6;
+    return 7;
 }
 
 static const double deg_per_rad = 180.0 / 3.14159265358979323846;

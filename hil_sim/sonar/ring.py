@@ -82,7 +82,8 @@ def _completion_ms(reading: Reading) -> float:
 class SonarRing(RingState):
     """The arrays of a robot: every `cycle_ms` each enabled array fires its next transducer.
 
-    enabled: one switch for each array that ARCOS knows; switches of arrays that are not fitted do nothing.
+    enabled: one switch for each array that ARCOS knows; switches of arrays that are not fitted do nothing. kinds: of
+    the faults of readings, by the numbers that C knows; None of none.
     """
 
     def __init__(
@@ -121,7 +122,7 @@ class SonarRing(RingState):
         self._last_ms = math.nan
         self._pending: list[Reading] = []
         self._live: list[ArrayState] = []
-        self._kinds: list[str | None] = [None]
+        self.kinds: list[str | None] = [None]
         self._fire_ms = -math.inf
         self._ready_ms = math.inf
         self.moving = moving
@@ -201,20 +202,20 @@ class SonarRing(RingState):
     def hand_over(self) -> None:
         """Let C go on with the readings under way."""
         if self._pending:
-            self._under_way.put(self._pending, self._kinds)
+            self._under_way.put(self._pending, self.kinds)
             self._pending.clear()
 
-    def take_heard(self, *, keep: bool = False) -> list[Reading]:
+    def take_heard(self) -> list[Reading]:
         """Return the readings that C has brought in since the last call."""
-        return self._in.take(self._kinds, keep=keep) if self._in.count else []
+        return self._in.take(self.kinds) if self._in.count else []
 
     def hold(self, readings: Sequence[Reading]) -> None:
         """Let C keep these behind those that it has brought in."""
-        self._in.put(readings, self._kinds)
+        self._in.put(readings, self.kinds)
 
     def _take_back(self) -> None:
         """Go on with the readings under way that C has left."""
-        self._pending += self._under_way.take(self._kinds)
+        self._pending += self._under_way.take(self.kinds)
 
     def _take_switches(self) -> None:
         """Note which arrays fire from now on."""

@@ -76,10 +76,10 @@ class Rows(ctypes.Structure):
     count: int
     _fields_ = [("count", ctypes.c_int64), ("rows", ctypes.c_uint8 * (_ROW.size * _KEPT))]
 
-    def take(self, kinds: Sequence[str | None], *, keep: bool = False) -> list[Reading]:
-        """Return them and keep none unless asked to; kinds: of faults, by their number."""
+    def take(self, kinds: Sequence[str | None]) -> list[Reading]:
+        """Return them and keep none; kinds: of faults, by their number."""
         data = memoryview(self).cast("B")[8 : 8 + _ROW.size * self.count]
-        self.count *= keep
+        self.count = 0
         return [
             Reading(t_ms, number, range_mm, true_mm, kinds[kind])
             for t_ms, number, range_mm, true_mm, kind in _ROW.iter_unpack(data)

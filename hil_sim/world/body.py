@@ -11,9 +11,11 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Final, Protocol, TypeAlias
 
+import numpy as np
+
 from hil_sim.native import library
 from hil_sim.tables.robot import BodyShape, robot_table
-from hil_sim.world.model import Pose, World
+from hil_sim.world.model import Floats, Pose, World
 from hil_sim.world.state import body_state
 
 _SEGMENTS: Final = 5
@@ -56,7 +58,7 @@ class BodyModel:
         self._moving = moving
         self.shape = shape if shape is not None else robot_table().body
         self._reach_mm = self.shape.reach_mm
-        self._solids = [(float(a), float(b), float(c), float(d)) for a, b, c, d in world.segments]
+        self._solids = world.segments
         self._cells: dict[tuple[int, int], _Solids] = {}
         self._measure = _measure_in_c(self.shape) or _measure_in_python(self.shape)
         self._last: tuple[float, float, float] | None = None
@@ -116,7 +118,8 @@ class BodyModel:
         if cell not in self._cells:
             x, y = (cell[0] + 0.5) * _CELL_MM, (cell[1] + 0.5) * _CELL_MM
             limit = _SEARCH_MM + self._reach_mm + _CELL_MM
-            self._cells[cell] = _Solids([s for s in self._solids if _point_distance(x, y, *s) <= limit])
+            near = self._solids[distances_mm(self._solids, x, y) <= limit]
+            self._cells[cell] = _Solids([(a, b, c, d) for a, b, c, d in near.tolist()])
         return self._cells[cell]
 
 
@@ -222,6 +225,16 @@ def _point_distance(px: float, py: float, x1: float, y1: float, x2: float, y2: f
     t = ((px - x1) * dx + (py - y1) * dy) / length if length > 0 else 0.0
     t = min(1.0, max(0.0, t))
     return distance(x1 + t * dx - px, y1 + t * dy - py)
+
+
+def distances_mm(segments: Floats, x_mm: float, y_mm: float) -> Floats:
+    """Return how far a place is from each segment; segments: x1, y1, x2, y2 in mm, (n, 4)."""
+    x1, y1, x2, y2 = segments.T
+    dx, dy = x2 - x1, y2 - y1
+    length = dx * dx + dy * dy
+    along = ((x_mm - x1) * dx + (y_mm - y1) * dy) / np.where(length > 0, length, 1.0)
+    along = np.clip(along, 0.0, 1.0)
+    return np.asarray(np.hypot(x1 + along * dx - x_mm, y1 + along * dy - y_mm))
 
 
 def _rectangle_distance(shape: BodyShape, x1: float, y1: float, x2: float, y2: float) -> float:

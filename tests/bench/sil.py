@@ -9,6 +9,8 @@ import time
 from collections.abc import Mapping
 
 from hil_sim import native
+from hil_sim.bench.journey import Case, mission_of, parse_id
+from hil_sim.bench.journey_track import run_case
 from hil_sim.sil import Mission, Sil
 from hil_sim.world.files import load_world
 from hil_sim.world.movers import Door, Person
@@ -55,6 +57,20 @@ def _report(name: str, mission: Mission, repeats: int) -> None:
     )
 
 
+def _report_bench(name: str, case: Case, repeats: int) -> None:
+    """What part of a journey of the bench is its mission."""
+    run_case(case)
+    mission, shares = mission_of(case), []
+    for _ in range(repeats):
+        start = time.process_time()
+        Sil(mission).run()
+        alone_s = time.process_time() - start
+        run_case(case)
+        shares.append(alone_s / (time.process_time() - start - alone_s))
+    spread = f"{min(shares):.2f} to {max(shares):.2f}"
+    print(f"  {name:20} {statistics.median(shares):7.2f} of bench journey's time ({spread})")
+
+
 def main() -> None:
     """Run the benchmark."""
     parser = argparse.ArgumentParser(description=__doc__, epilog="exit codes: 0 measured, 1 no library")
@@ -66,6 +82,8 @@ def main() -> None:
     print(f"software in the loop, world {arguments.world}, echoes {how}, one core, processor time")
     for name, mission in _missions(arguments.world, arguments.seconds).items():
         _report(name, mission, arguments.repeats)
+    for row in ("rooms", "rooms+one", "rooms+people"):
+        _report_bench(row, parse_id(f"argus/tune/{row}/{arguments.world}/7"), arguments.repeats)
 
 
 if __name__ == "__main__":

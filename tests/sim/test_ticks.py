@@ -15,9 +15,8 @@ from hil_sim.faults.execute import FaultSet
 from hil_sim.faults.grammar import parse_fault
 from hil_sim.faults.kinds import SonarFault
 from hil_sim.robot import robot as robot_module
-from hil_sim.sil import Mission, Sil
+from hil_sim.sil import Mission, Sighting, Sil, Trace
 from hil_sim.sil.outcome import Outcome
-from hil_sim.sil.run import Sighting, Trace
 from hil_sim.tables.robot import DEFAULT_ROBOT, robot_table
 from hil_sim.world.files import load_world, world_names
 from hil_sim.world.movers import Door, Mover, Person

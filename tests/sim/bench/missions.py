@@ -51,16 +51,10 @@ def track(*visible: tuple[int, float], stand: tuple[float, float] = (0.0, 0.0), 
 
     visible: sonar and time of the first of its visible readings, a second apart.
     """
-    result = Track()
-    driving = 0.0
-    for second in range(int(t_s) + 1):
-        result.t_s.append(float(second))
-        result.driving_s.append(driving)
-        result.driven_mm.append(100 * driving)
-        driving += 0.0 if stand[0] <= second < stand[1] else 1.0
-    for sonar, first in visible:
-        result.visible_s[sonar] = [first + k for k in range(20)]
-    return result
+    seconds = [float(second) for second in range(int(t_s) + 1)]
+    driving_s = [second - min(max(second - stand[0], 0.0), stand[1] - stand[0]) for second in seconds]
+    shown = {sonar: [first + k for k in range(20)] for sonar, first in visible}
+    return Track(seconds, [100 * driving for driving in driving_s], driving_s, shown)
 
 
 def record(name: str = "argus/tune/office/1/off", **more: Any) -> dict[str, Any]:

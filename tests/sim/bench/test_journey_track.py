@@ -25,7 +25,7 @@ from hil_sim.bench.journey_track import (
     work,
 )
 from hil_sim.bench.pool import run_here
-from hil_sim.sil import Collision, Sighting, Sil, run
+from hil_sim.sil import Collision, Sighting, Sightings, Sil, run
 from hil_sim.tables.robot import robot_table
 from hil_sim.world.body import BodyModel
 from hil_sim.world.files import load_world
@@ -41,6 +41,7 @@ class Watch:
     at: list[tuple[float, float]] = field(default_factory=list)
     near: list[float] = field(default_factory=list)
     looking: list[bool] = field(default_factory=list)
+    speeds: list[float] = field(default_factory=list)
     headings: list[float] = field(default_factory=list)
     body: BodyModel | None = None
 
@@ -49,6 +50,7 @@ class Watch:
             self.body = BodyModel(sil.world, None, robot_table().body)
         self.at.append((sil.robot.chassis.x, sil.robot.chassis.y))
         self.looking.append(sil.mode == LOOKING)
+        self.speeds.append(abs(sil.robot.drive.v))
         self.headings.append(sil.robot.chassis.th)
         if sil.mode == FREE and sil.robot.drive.v > 5:
             self.near.append(self.body.clearance_mm(sil.robot.chassis.pose))
@@ -95,14 +97,25 @@ def test_the_path_is_the_way(both: tuple[dict[str, object], Watch]) -> None:
     assert isinstance(path, list)
     assert max(min(math.dist(spot, there) for there in path) for spot in watch.at) < 201
     assert math.dist(path[0], watch.at[0]) < 1
+    assert all(spot in path for spot in [*record["stops_at"], *record["looks_at"]])  # type: ignore[misc]
+
+
+def test_a_stop_is_one_of_a_robot_that_ran(both: tuple[dict[str, object], Watch]) -> None:
+    record, watch = both
+    stops, runs = 0, False
+    for speed in watch.speeds:
+        stops += runs and speed <= 5
+        runs = speed > 50 or (runs and speed > 5)
+    assert stops > 0
+    assert record["stops"] == stops
 
 
 def test_a_robot_that_does_not_move_makes_no_way() -> None:
     mission = mission_of(parse_id(CASE))
-    diary = Diary()
-    sil = Sil(type(mission)(mission.world, (), limit_s=5.0, stop_at_goal=False), trace=diary)
+    sightings = Sightings()
+    sil = Sil(type(mission)(mission.world, (), limit_s=5.0, stop_at_goal=False), sightings=sightings)
     sil.run()
-    fields = diary.fields()
+    fields = Diary.of(sightings.seen.rows, sil.world, robot_table().body).fields()
     assert (fields["stops"], fields["turned_deg"], fields["closest_mm"], fields["early_mm"]) == (
         0,
         0,
@@ -110,6 +123,11 @@ def test_a_robot_that_does_not_move_makes_no_way() -> None:
         0,
     )
     assert len(fields["path"]) == 1
+
+
+def test_without_a_sip_there_is_nothing() -> None:
+    fields = Diary.of(Sightings().seen.rows, load_world("lab"), robot_table().body).fields()
+    assert (fields["path"], fields["modes_s"], fields["closest_mm"]) == ([], {}, None)
 
 
 def test_there_by_its_word_but_not_truly() -> None:

@@ -17,9 +17,8 @@ from hil_sim.bench.judge import (
     judge,
     judge_fault,
 )
-from hil_sim.bench.witness import is_visible
-from hil_sim.sil import Collision, FaultTruth, Mission, run
-from hil_sim.sonar.params import NO_ECHO_MM, Reading
+from hil_sim.sil import Collision, FaultTruth, Mission, Sightings, run
+from hil_sim.sonar.params import NO_ECHO_MM
 
 
 def judged(truth: FaultTruth, *changes: tuple[float, str, str], **more: Any) -> dict[str, Any]:
@@ -189,14 +188,6 @@ def test_readings_in_time_are_those_within_the_bound_and_the_fault() -> None:
     assert judged(fault("silent", first_visible_s=10.5), track=track())["visible_in_time"] == 94
 
 
-@pytest.mark.parametrize(
-    ("true_mm", "heard_mm", "visible"),
-    [(1000, 1100, False), (1000, 1101, True), (4000, 4200, False), (4000, 3799, True), (5000, 100, True)],
-)
-def test_visible_is_off_by_more_than_100_mm_and_5_percent(true_mm: int, heard_mm: int, visible: bool) -> None:
-    assert is_visible(Reading(0.0, 3, heard_mm, true_mm, "wrong")) is visible
-
-
 # ---- false disables and false names -----------------------------------------------------------------------------
 
 
@@ -298,7 +289,7 @@ def test_undetected_is_a_fault_there_and_not_given_up_at_the_collision(
 
 
 def test_the_track_sees_what_the_run_did() -> None:
-    own = Track()
+    sightings = Sightings()
     mission = Mission(
         "demo",
         ((1700, 0), (1700, 1550)),
@@ -306,7 +297,8 @@ def test_the_track_sees_what_the_run_did() -> None:
         config={"active": "off"},
         limit_s=8,
     )
-    done = run(mission, trace=own)
+    done = run(mission, sightings=sightings)
+    own = Track.of(sightings.seen)
     assert own.stuck_mm == {3: {NO_ECHO_MM}}
     assert len(own.visible_s[3]) >= 3
     assert own.visible_s[3][0] == pytest.approx(done.truth[0].first_visible_s, abs=0.1)

@@ -8,11 +8,12 @@ import re
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from hil_sim.bench import witness
-from hil_sim.bench.witness import contradicted, fired
-from hil_sim.sil import Sighting
+from hil_sim.bench.witness import Pings
+from hil_sim.sil import READING, Sighting
 from hil_sim.sonar.params import NO_ECHO_MM, Reading
 from hil_sim.world.model import Pose
 
@@ -27,6 +28,23 @@ def sighting(
     return Sighting(t_s, Pose(x, y, heading), readings)
 
 
+def pings(*sightings: Sighting) -> Pings:
+    kinds: tuple[str | None, ...] = (None, "wrong", "stuck")
+    places = [one.pose for one in sightings]
+    listed = [
+        (row, (r.t_ms, r.number, r.range_mm, r.true_mm, kinds.index(r.fault)))
+        for row, one in enumerate(sightings)
+        for r in one.readings
+    ]
+    return Pings(
+        np.array([one.t_s for one in sightings]),
+        np.array(places, dtype=np.float64).reshape(-1, 3),
+        np.array([values for _, values in listed], READING),
+        np.array([row for row, _ in listed], dtype=np.intp),
+        kinds,
+    )
+
+
 def lie(t_s: float, value: int = 1000, fault: str | None = "wrong") -> Reading:
     return Reading(1000 * t_s, FAULTY, value, TRUE_MM, fault)
 
@@ -36,8 +54,7 @@ def sound(t_s: float, value: int = TRUE_MM, fault: str | None = None) -> Reading
 
 
 def count(*sightings: Sighting, begin_s: float = 0.0, end_s: float = 30.0) -> int:
-    first = sighting(0.0)
-    return contradicted([first, *sightings], FAULTY, begin_s, end_s)
+    return pings(sighting(0.0), *sightings).contradicted(FAULTY, begin_s, end_s)
 
 
 def turned(t_s: float, *readings: Reading, **more: Any) -> Sighting:
@@ -122,19 +139,28 @@ def test_the_pose_is_that_of_the_reading_not_of_the_sip() -> None:
 
 
 def test_readings_are_counted_right_or_not() -> None:
-    seen = [
+    seen = pings(
         sighting(0.0),
         *(sighting(k + 0.3, lie(k), sound(k)) for k in range(1, 6)),
         sighting(9, lie(9.0, 2000)),
-    ]
-    assert fired(seen, FAULTY, 2.0, 4.0) == 3
-    assert fired(seen, OTHER, 0.0, 30.0) == 5
-    assert fired(seen, FAULTY, 0.0, 30.0) == 6
-    assert fired([], FAULTY, 0.0, 30.0) == 0
+    )
+    assert seen.fired(FAULTY, 2.0, 4.0) == 3
+    assert seen.fired(OTHER, 0.0, 30.0) == 5
+    assert seen.fired(FAULTY, 0.0, 30.0) == 6
+    assert pings().fired(FAULTY, 0.0, 30.0) == 0
 
 
 def test_a_mission_without_a_sighting_has_none() -> None:
-    assert contradicted([], FAULTY, 0.0, 10.0) == 0
+    assert pings().contradicted(FAULTY, 0.0, 10.0) == 0
+
+
+@pytest.mark.parametrize(
+    ("true_mm", "heard_mm", "visible"),
+    [(1000, 1100, False), (1000, 1101, True), (4000, 4200, False), (4000, 3799, True), (5000, 100, True)],
+)
+def test_visible_is_off_by_more_than_100_mm_and_5_percent(true_mm: int, heard_mm: int, visible: bool) -> None:
+    seen = pings(sighting(0.0, Reading(0.0, 3, heard_mm, true_mm, "wrong"), Reading(0.0, 4, 100, 5000, None)))
+    assert seen.is_visible().tolist() == [visible, False]
 
 
 @pytest.mark.parametrize(
