@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: MIT
+// Rule under attack: on its way the robot asks, SIP by SIP, for what the state calls for: it stops where it
+// cannot go on, sweeps only where that shows more, counters a short wheel only where it may turn, and an
+// operator's step is one MOVE.
+#include "behaviour/travel.h"
+
+#include "behaviour/state.h"
+#include "knowledge/angle.h"
+#include "echo.h"
+#include "health.h"
+#include "robot.h"
+#include "unity.h"
+
+static robot_t robot;
+static argus_t *core;
+static argus_intent_t intent;
+
+static void begin_with(int32_t profile, int32_t creep_mm_s) {
+    argus_config_t config = robot_config_of(profile);
+    config.creep_mm_s = creep_mm_s;
+    robot_init(&robot, &config, 1000);
+    robot.world = robot_world_segments;
+    robot_box(&robot, -4000, -4000, 8000, 4000);
+    TEST_ASSERT_TRUE(robot_goal(&robot, 6000, 0));
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 10000));
+    robot_run(&robot, 3000);
+    core = &robot.argus;
+}
+
+void setUp(void) {
+    begin_with(ARGUS_PROFILE_ARGUS, 0);
+}
+
+static void run(void (*mode)(const argus_t *, argus_travel_t *, argus_intent_t *)) {
+    intent = (argus_intent_t){0};
+    core->travel.beside_sip = core->knowledge.sips; // the check beside is made
+    mode(core, &core->travel, &intent);
+}
+
+static void put_before(int ahead_mm) {
+    const argus_point_t ahead = {ahead_mm, 0};
+    argus_touches_add(&core->echoes.touches, argus_to_course(&core->knowledge.pose, ahead));
+}
+
+void test_without_motors_each_mode_of_the_way_stops(void) {
+    core->knowledge.flags = (uint16_t)(core->knowledge.flags & ~(unsigned)ARCOS_FLAG_MOTORS);
+    run(argus_run_driving);
+    TEST_ASSERT_EQUAL(ARGUS_STOP_STOP, intent.stop);
+    TEST_ASSERT_EQUAL(ARGUS_DO_CHECK, intent.act);
+    run(argus_run_sweeping);
+    TEST_ASSERT_EQUAL(ARGUS_STOP_STOP, intent.stop);
+    TEST_ASSERT_EQUAL(ARGUS_DO_CHECK, intent.act);
+    run(argus_run_creeping);
+    TEST_ASSERT_EQUAL(ARGUS_STOP_STOP, intent.stop);
+    TEST_ASSERT_EQUAL(ARGUS_DO_CHECK, intent.act);
+}
+
+void test_a_sweep_that_fails_is_checked(void) {
+    core->base.taken = true;
+    core->motion.failed = true;
+    run(argus_run_sweeping);
+    TEST_ASSERT_EQUAL(ARGUS_DO_CHECK, intent.act);
+    TEST_ASSERT_TRUE(intent.full);
+}
+
+// S2: what was touched stands there whatever the sonars hear: before the check range no step is made.
+void test_s2_after_a_sweep_what_was_touched_ahead_stops_the_step(void) {
+    core->base.taken = true;
+    core->motion.settled = true;
+    core->motion.failed = false;
+    core->motion.mark = (argus_mark_t){0};
+    core->travel.swept = true;
+    core->travel.drive.done = true;
+    core->travel.drive.smallest_mm = 4000;
+    put_before(core->knowledge.robot->sonar_face_mm + core->config.check_range_mm - 50);
+    run(argus_run_sweeping);
+    TEST_ASSERT_EQUAL(ARGUS_EV_OBJECT, intent.event);
+    TEST_ASSERT_EQUAL(ARGUS_DO_CHECK, intent.act);
+    TEST_ASSERT_EQUAL(ARGUS_WAY_REFUSE, intent.way);
+}
+
+// ---- a short wheel
+
+static void shorten(int permille) {
+    core->wheel.short_pm = (int16_t)permille;
+    core->wheel.odometer_mm = core->knowledge.odometer_mm;
+}
+
+void test_a_short_wheel_is_countered_by_little(void) {
+    run(argus_run_driving);
+    const bool steered = intent.steers;
+    TEST_ASSERT_EQUAL(ARGUS_DO_DRIVE, intent.act);
+    TEST_ASSERT_FALSE(steered); // it is on its bearing
+    for (int side = -1; side <= 1; side += 2) {
+        shorten(side * 50);
+        run(argus_run_driving);
+        TEST_ASSERT_EQUAL(ARGUS_DO_DRIVE, intent.act);
+        TEST_ASSERT_TRUE(intent.steers);
+        const int32_t by_cdeg = intent.cdeg - core->knowledge.pose.heading_cdeg;
+        TEST_ASSERT_TRUE(side > 0 ? by_cdeg < 0 : by_cdeg > 0);
+        TEST_ASSERT_TRUE(argus_abs(by_cdeg) < 1000);
+    }
+}
+
+// Where it may not turn by even so little, it is let bend.
+void test_s7_a_short_wheel_is_not_countered_where_the_body_would_meet_something(void) {
+    shorten(50);
+    const int32_t beside_mm = argus_robot_half_width_mm(core->knowledge.robot) + 5;
+    for (int side = -1; side <= 1; side += 2) {
+        const argus_pose_t *const pose = &core->knowledge.pose;
+        for (int x = -300; x <= 200; x += 50) {
+            place_echo(&core->echoes, &core->knowledge, pose->x_mm + x, pose->y_mm + side * beside_mm);
+            core->echoes.at[core->echoes.count - 1].again = true;
+        }
+    }
+    const argus_guard_t guard = argus_guard(core);
+    TEST_ASSERT_FALSE(argus_guard_may_turn(&guard));
+    run(argus_run_driving);
+    TEST_ASSERT_FALSE(intent.steers);
+}
+
+// ---- what is not seen
+
+static void see_nothing_of_the_way(void) {
+    put_health(&core->knowledge.sonar[3], ARGUS_DISABLED, ARGUS_KIND_OFF, core->now_ms);
+    put_health(&core->knowledge.sonar[4], ARGUS_DISABLED, ARGUS_KIND_OFF, core->now_ms);
+    argus_rays_forget_all(&core->rays);
+}
+
+void test_a_way_that_is_not_seen_is_stopped_before_and_then_swept(void) {
+    see_nothing_of_the_way();
+    core->plan.disabled = 3u << 3;
+    run(argus_run_driving);
+    TEST_ASSERT_EQUAL(ARGUS_DO_BRAKE, intent.act);
+    core->travel.aimed = true;
+    core->motion.kind = ARGUS_MOTION_STOP; // which is at work
+    core->motion.settled = false;
+    run(argus_run_driving);
+    TEST_ASSERT_EQUAL(ARGUS_DO_NOTHING, intent.act);
+    core->travel.aimed = true;
+    core->motion.settled = true;
+    run(argus_run_driving);
+    TEST_ASSERT_EQUAL(ARGUS_DO_SWEEP, intent.act);
+}
+
+// Where none is out, no sweep shows more: only a look would, and it is waited for the room that takes.
+void test_a_way_that_only_a_look_could_show_is_waited_for(void) {
+    see_nothing_of_the_way();
+    core->plan.disabled = 0;
+    core->travel.aimed = true;
+    core->motion.settled = true;
+    run(argus_run_driving);
+    TEST_ASSERT_EQUAL(ARGUS_DO_WAIT, intent.act);
+    TEST_ASSERT_EQUAL(ARGUS_WAIT_TURN, intent.why);
+}
+
+// ---- creeping
+
+static void begin_creeping(void) {
+    begin_with(ARGUS_PROFILE_ARGUS, 50);
+    core->session.robot.front_bumpers = 5;
+    core->reflexes.touched_unheard = true;
+    core->knowledge.heard = 0;
+    core->mode = ARGUS_MODE_CREEPING;
+    core->travel.aimed = true;
+    core->travel.heeded_ms = core->now_ms;
+    const argus_guard_t guard = argus_guard(core);
+    TEST_ASSERT_TRUE(argus_guard_may_creep(&guard));
+}
+
+void test_it_creeps_on_by_a_short_way(void) {
+    begin_creeping();
+    run(argus_run_creeping);
+    TEST_ASSERT_EQUAL(ARGUS_DO_CREEP, intent.act);
+    TEST_ASSERT_EQUAL_INT32(150, intent.mm);
+    TEST_ASSERT_FALSE(intent.steers);
+}
+
+void test_it_creeps_to_nothing_that_was_touched(void) {
+    begin_creeping();
+    put_before(core->knowledge.robot->sonar_face_mm + 150);
+    run(argus_run_creeping);
+    TEST_ASSERT_EQUAL(ARGUS_EV_OBJECT, intent.event);
+    TEST_ASSERT_EQUAL(ARGUS_DO_CHECK, intent.act);
+    TEST_ASSERT_EQUAL(ARGUS_STOP_HALT, intent.stop);
+}
+
+void test_a_robot_that_does_not_obey_does_not_creep(void) {
+    begin_creeping();
+    core->knowledge.still_sips = 5;
+    core->motion.kind = ARGUS_MOTION_MOVE;
+    core->motion.settled = false;
+    core->travel.heeded_ms = core->now_ms - 3000u;
+    run(argus_run_creeping);
+    TEST_ASSERT_EQUAL(ARGUS_DO_WAIT, intent.act);
+    TEST_ASSERT_EQUAL(ARGUS_WAIT_MOTORS, intent.why);
+    core->travel.heeded_ms = core->now_ms - 2999u;
+    run(argus_run_creeping);
+    TEST_ASSERT_EQUAL(ARGUS_DO_CREEP, intent.act);
+}
+
+void test_it_steers_while_it_creeps_only_off_its_bearing_and_where_it_may_turn(void) {
+    begin_creeping();
+    core->knowledge.pose.heading_cdeg = 500;
+    run(argus_run_creeping);
+    TEST_ASSERT_EQUAL(ARGUS_DO_CREEP, intent.act);
+    TEST_ASSERT_TRUE(intent.steers);
+    TEST_ASSERT_TRUE(argus_abs(intent.cdeg) < 200);
+}
+
+// ---- an operator's step
+
+void test_an_operators_step_is_one_move(void) {
+    begin_creeping();
+    core->travel.jog_mm = 120;
+    core->motion.kind = ARGUS_MOTION_MOVE;
+    core->motion.settled = false;
+    run(argus_run_creeping);
+    TEST_ASSERT_EQUAL(ARGUS_DO_NOTHING, intent.act);
+    core->motion.settled = true;
+    run(argus_run_creeping);
+    TEST_ASSERT_EQUAL(ARGUS_DO_DECIDE, intent.act);
+    TEST_ASSERT_EQUAL_INT32(0, core->travel.jog_mm);
+}
+
+void test_an_operators_step_without_room_is_over_before_it_began(void) {
+    core->travel.jog_mm = 120;
+    core->travel.aimed = true;
+    for (int i = 1; i <= 6; i++) {
+        core->knowledge.sonar[i].reading_mm = (uint16_t)core->config.object_range_mm;
+        core->knowledge.sonar[i].odometer_mm = core->knowledge.odometer_mm;
+    }
+    run(argus_run_driving);
+    TEST_ASSERT_EQUAL(ARGUS_DO_DECIDE, intent.act);
+    TEST_ASSERT_EQUAL_INT32(0, core->travel.jog_mm);
+}
