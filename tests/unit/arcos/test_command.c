@@ -240,3 +240,21 @@ void test_random_use_matches_a_list(void) {
         }
     }
 }
+
+// Room is kept for both stops; where others have taken it, nothing is overwritten.
+void test_what_has_no_room_is_refused_whole(void) {
+    argus_outbox_clear(&outbox);
+    while (argus_outbox_plain(&outbox, ARCOS_CMD_PULSE)) {
+    }
+    argus_outbox_urgent(&outbox, ARCOS_CMD_STOP);
+    argus_outbox_urgent(&outbox, ARCOS_CMD_E_STOP);
+    const uint32_t refused = outbox.refused;
+    int more = 0;
+    for (uint16_t before = 0; before != outbox.length && more < 100; more++) {
+        before = outbox.length;
+        argus_outbox_urgent(&outbox, (uint8_t)(ARCOS_CMD_E_STOP + 1 + more));
+    }
+    TEST_ASSERT_EQUAL(refused + 1, outbox.refused);
+    TEST_ASSERT_TRUE(outbox.length <= ARGUS_OUTBOX_BYTES);
+    TEST_ASSERT_NOT_EQUAL(ARCOS_CMD_E_STOP + more, argus_outbox_first(&outbox)); // the last one
+}

@@ -716,3 +716,23 @@ void test_bytes_of_a_packet_under_way_are_taken_as_any_others(void) {
     }
     TEST_ASSERT_GREATER_THAN_MESSAGE(1000, ahead, "the shortcut is never taken");
 }
+
+void test_a_packet_without_room_is_neither_sealed_nor_encoded(void) {
+    static const uint8_t data[] = {1, 2, 3, 4};
+    uint8_t packet[16] = {0};
+    TEST_ASSERT_EQUAL(9, argus_frame_encode(packet, 9, data, sizeof data));
+    for (size_t capacity = 0; capacity < 9; capacity++) {
+        memset(packet, 0x55, sizeof packet);
+        TEST_ASSERT_EQUAL(0, argus_frame_encode(packet, capacity, data, sizeof data));
+        TEST_ASSERT_EQUAL(0, argus_frame_seal(packet, capacity, sizeof data));
+        TEST_ASSERT_EACH_EQUAL_HEX8(0x55, packet, sizeof packet);
+    }
+    TEST_ASSERT_EQUAL(0, argus_frame_seal(packet, sizeof packet, 0)); // nothing is no packet
+}
+
+void test_no_bytes_are_no_news(void) {
+    argus_parser_t parser;
+    argus_parser_init(&parser);
+    TEST_ASSERT_EQUAL(0, argus_parser_push(&parser, 1, NULL, 0));
+    TEST_ASSERT_EQUAL(0, parser.packets);
+}

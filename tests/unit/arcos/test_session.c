@@ -1075,3 +1075,55 @@ void test_after_any_garbage_a_good_robot_is_found(void) {
         TEST_ASSERT_TRUE_MESSAGE(argus_session_is_open(&session), message);
     }
 }
+
+// ------------------------------------------------------------------------------------------------ leaving
+
+// SIPs that still come so long after the last word tell that CLOSE did not arrive.
+static uint16_t waiting_after_sip(uint32_t after_ms, uint8_t type) {
+    uint8_t data[32];
+    uint8_t packet[64];
+    argus_session_init(&session);
+    session.state = ARGUS_SESSION_LEAVING;
+    session.spoke_ms = now() - after_ms;
+    robot.sip_type = 0x32;
+    sip_data(data, 1);
+    data[0] = type;
+    const size_t count = argus_frame_encode(packet, sizeof packet, data, sizeof data);
+    size_t taken = 0;
+    argus_session_receive(&session, &config, now(), packet, count, &taken);
+    argus_session_process(&session, &config, now());
+    return session.outbox.length;
+}
+
+void test_a_close_that_got_lost_is_said_again(void) {
+    TEST_ASSERT_EQUAL(0, waiting_after_sip(149, 0x32));
+    TEST_ASSERT_EQUAL(0, waiting_after_sip(150, 0x90)); // no SIP
+    TEST_ASSERT_GREATER_THAN(0, waiting_after_sip(150, 0x32));
+    TEST_ASSERT_EQUAL(ARCOS_CMD_STOP, argus_outbox_first(&session.outbox));
+}
+
+void test_what_is_left_is_left_once(void) {
+    connect();
+    argus_session_leave(&session, now());
+    TEST_ASSERT_EQUAL(ARGUS_SESSION_LEAVING, session.state);
+    const uint16_t length = session.outbox.length;
+    argus_session_leave(&session, now());
+    TEST_ASSERT_EQUAL(length, session.outbox.length);
+    TEST_ASSERT_EQUAL(0, argus_session_observe(&session, &config, now())); // nobody is observed any more
+    session.state = ARGUS_SESSION_CLOSED;
+    argus_session_leave(&session, now());
+    TEST_ASSERT_EQUAL(ARGUS_SESSION_CLOSED, session.state);
+    TEST_ASSERT_EQUAL(0, argus_session_observe(&session, &config, now()));
+}
+
+// The zeros after a gap wait for room.
+void test_zeros_that_do_not_fit_are_still_due(void) {
+    uint8_t packet[16];
+    connect();
+    argus_outbox_clear(&session.outbox);
+    session.zeros_due = 2;
+    TEST_ASSERT_EQUAL(0, argus_session_transmit(&session, now(), packet, 3));
+    TEST_ASSERT_EQUAL(2, session.zeros_due);
+    TEST_ASSERT_EQUAL(9, argus_session_transmit(&session, now(), packet, sizeof packet));
+    TEST_ASSERT_EQUAL(1, session.zeros_due);
+}

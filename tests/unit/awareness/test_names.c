@@ -213,3 +213,41 @@ void test_what_is_kept_names_nobody_by_itself(void) {
         }
     }
 }
+
+// By its own readings no sonar is given up as late: others contradict it as well, several times, and in calm.
+void test_a_lag_convicts_only_where_others_contradict_and_nobody_walks_about(void) {
+    for (int lacks = 0; lacks < 5; lacks++) {
+        setUp();
+        give_ground();
+        c->hypothesis[1] = (argus_hypothesis_t){ARGUS_CEILING, 900};
+        c->score[ARGUS_TEST_PEERS] = (int16_t)(lacks == 1 ? -10 : 0);
+        c->against = lacks == 2 ? 1 : c->against;
+        c->episodes = lacks == 3 ? 1 : c->episodes;
+        e.busy = lacks == 4;
+        snprintf(text, sizeof text, "lacks %d", lacks);
+        TEST_ASSERT_EQUAL_MESSAGE(lacks == 0 ? ARGUS_KIND_SLOW : ARGUS_KIND_NONE, convicted(), text);
+    }
+}
+
+// Below a name the best explanation so far is told, and how much of a verdict there is.
+void test_the_best_explanation_so_far_is_told_with_its_share(void) {
+    for (int test = 0; test < ARGUS_TESTS; test++) {
+        setUp();
+        uint8_t percent = 0;
+        TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, argus_names_best(&e, SONAR, &percent));
+        TEST_ASSERT_EQUAL(0, percent);
+        c->score[test] = (int16_t)(argus_bounds[test].convincing / 10 + 1);
+        TEST_ASSERT_EQUAL(kind_of[test], argus_names_best(&e, SONAR, &percent));
+        TEST_ASSERT_UINT_WITHIN(1, 10, percent);
+        c->score[test] = INT16_MAX;
+        argus_names_best(&e, SONAR, &percent);
+        TEST_ASSERT_EQUAL(100, percent);
+    }
+    setUp();
+    uint8_t percent = 0;
+    c->hypothesis[0].over_healthy = (int16_t)(ARGUS_LATE_CONVINCING / 10 + 1);
+    TEST_ASSERT_EQUAL(ARGUS_KIND_SLOW, argus_names_best(&e, SONAR, &percent));
+    TEST_ASSERT_UINT_WITHIN(1, 10, percent);
+    c->score[ARGUS_TEST_GARBAGE] = (int16_t)(argus_bounds[ARGUS_TEST_GARBAGE].convincing / 5);
+    TEST_ASSERT_EQUAL(ARGUS_KIND_GARBAGE, argus_names_best(&e, SONAR, &percent)); // which is more
+}

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Rule under attack (S2, S3): each detector says what it sees once, in the SIP that shows it, asks for what that
-// calls for, and is not led astray by one odd value.
+// Rule under attack (S2, S3): each detector says what it sees once, in the SIP that shows it, asks for what
+// that calls for, and is not led astray by one odd value.
 #include "behaviour/reflexes.h"
 
 #include "behaviour/state.h"

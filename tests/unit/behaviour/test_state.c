@@ -114,7 +114,8 @@ void test_hemmed_in_the_present_heading_is_home(void) {
     TEST_ASSERT_EQUAL(ARGUS_BASE_RENEW, intent.base);
 }
 
-// One echo is read once more; a bumper, a second time, or the profile of the paper lets nothing be read again.
+// One echo is read once more; a bumper, a second time, or the profile of the paper lets nothing be read
+// again.
 void test_an_echo_is_read_again_once_and_not_at_a_bumper(void) {
     begin_in(3000, 3000);
     argus_guard_t guard = argus_guard(core);

@@ -5,9 +5,9 @@
 #include "behaviour/travel.h"
 
 #include "behaviour/state.h"
-#include "knowledge/angle.h"
 #include "echo.h"
 #include "health.h"
+#include "knowledge/angle.h"
 #include "robot.h"
 #include "unity.h"
 

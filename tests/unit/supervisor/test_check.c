@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack: a health check concludes what its rules let it and no more: a suspicion under `passive`
-// lasts as long as the disparity, a verdict without a witness leaves it open, looks clear those that were asked
-// and prove only what others have seen, each time anew and in calm.
+// lasts as long as the disparity, a verdict without a witness leaves it open, looks clear those that were
+// asked and prove only what others have seen, each time anew and in calm.
 #include "supervisor/check.h"
 
 #include "awareness/numbers.h"
@@ -75,10 +75,8 @@ void test_without_a_usable_witness_a_suspect_stays_one_and_is_not_asked_again_he
     put_health(sonar(AHEAD), ARGUS_SUSPECT, ARGUS_KIND_NONE, core->now_ms);
     TEST_ASSERT_EQUAL_HEX32(1u << AHEAD, argus_open_suspects(core));
     argus_verify_t *const verify = &core->verifying.verify;
-    *verify = (argus_verify_t){.phase = ARGUS_VERIFY_DONE,
-                               .result = ARGUS_RESULT_UNPROVEN,
-                               .sonar = AHEAD,
-                               .reading_mm = 777};
+    *verify = (argus_verify_t){
+        .phase = ARGUS_VERIFY_DONE, .result = ARGUS_RESULT_UNPROVEN, .sonar = AHEAD, .reading_mm = 777};
     argus_apply_verdict(core);
     TEST_ASSERT_EQUAL(ARGUS_SUSPECT, sonar(AHEAD)->health);
     TEST_ASSERT_EQUAL_HEX32(0, argus_open_suspects(core));
@@ -120,7 +118,8 @@ void test_looks_prove_what_others_have_seen_and_nothing_else(void) {
     TEST_ASSERT_EQUAL(ARGUS_KIND_WRONG, sonar(AHEAD)->kind);
     TEST_ASSERT_FALSE(is_given_up(ABEAM, ARGUS_KIND_WRONG, ARGUS_TEST_PEERS, false)); // no neighbours
     TEST_ASSERT_FALSE(is_given_up(AHEAD, ARGUS_KIND_WRONG, ARGUS_TEST_PEERS, true));  // people walk about
-    TEST_ASSERT_FALSE(is_given_up(AHEAD, ARGUS_KIND_OFF, ARGUS_TEST_PEERS, false));   // another name than before
+    TEST_ASSERT_FALSE(
+        is_given_up(AHEAD, ARGUS_KIND_OFF, ARGUS_TEST_PEERS, false)); // another name than before
     TEST_ASSERT_FALSE(is_given_up(AHEAD, ARGUS_KIND_STUCK, ARGUS_TEST_STUCK, false)); // its own readings tell
     TEST_ASSERT_GREATER_THAN(0, events(ARGUS_EV_SONAR_UNPROVEN));
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Rule under attack (profile argus): what the evidence of a SIP makes of one sonar: a conviction ahead breaks the
-// way off only where the rest does not carry it, a worse name yields to a better one, and probation ends by
-// evidence alone.
+// Rule under attack (profile argus): what the evidence of a SIP makes of one sonar: a conviction ahead breaks
+// the way off only where the rest does not carry it, a worse name yields to a better one, and probation ends
+// by evidence alone.
 #include "supervisor/judge.h"
 
 #include "awareness/numbers.h"
@@ -145,7 +145,7 @@ void test_one_that_yields_nothing_is_out_unless_its_turn_has_not_come(void) {
     TEST_ASSERT_EQUAL(ARGUS_DISABLED, silent(BEHIND, false));
     TEST_ASSERT_EQUAL(ARGUS_KIND_SILENT, sonar(BEHIND)->kind);
     TEST_ASSERT_EQUAL((argus_robot_polled(core->knowledge.robot) >> BEHIND & 1u) != 0 ? ARGUS_HEALTHY
-                                                                                       : ARGUS_DISABLED,
+                                                                                      : ARGUS_DISABLED,
                       silent(BEHIND, true));
     TEST_ASSERT_EQUAL(ARGUS_HEALTHY, silent(AHEAD, false));
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack: the manager finds what is wrong with the drive and with a laser while the robot goes its
-// way, says it once, and goes by what it has found: wheels that slip, a wheel that is short, a scan that stays.
+// way, says it once, and goes by what it has found: wheels that slip, a wheel that is short, a scan that
+// stays.
 #include <math.h>
 #include <stdlib.h>
 
@@ -132,10 +133,11 @@ void test_a_laser_that_stays_as_it_was_is_said_once(void) {
             ranges[i] = (argus_range_t){(uint8_t)i, (uint16_t)(1200 + 37 * i), 20};
         }
         const int32_t heading_cdeg = n * 400 % 36000 - 18000;
-        const argus_observation_t observation = {.pose = {0, 0, heading_cdeg == -18000 ? 18000 : heading_cdeg},
-                                                 .turn_cdeg_s = 4000,
-                                                 .ranges = ranges,
-                                                 .count = SECTORS};
+        const argus_observation_t observation = {
+            .pose = {0, 0, heading_cdeg == -18000 ? 18000 : heading_cdeg},
+            .turn_cdeg_s = 4000,
+            .ranges = ranges,
+            .count = SECTORS};
         now_ms += STEP_MS;
         TEST_ASSERT_TRUE(argus_observe(argus, now_ms, &observation));
         argus_process(argus, now_ms);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Rule under attack: what an intent asks for is done, with what follows from it, and what may not be done now is
-// not sent: nothing reaches the wheels but through the permit, and a robot that is being left checks nothing.
+// Rule under attack: what an intent asks for is done, with what follows from it, and what may not be done now
+// is not sent: nothing reaches the wheels but through the permit, and a robot that is being left checks
+// nothing.
 #include "supervisor/modes.h"
 
 #include "behaviour/state.h"
