@@ -193,3 +193,55 @@ void test_half_a_scan_is_none(void) {
     drive(4);
     TEST_ASSERT_EQUAL(ARGUS_SCAN_SOUND, laser.fault);
 }
+
+// One that is dark, and sees again, is sound; what was found first stays until it ends.
+void test_one_that_sees_again_is_sound(void) {
+    drive(1);
+    dark = true;
+    finds(ARGUS_SCAN_DARK, ARGUS_KIND_OFF, 15);
+    frozen = true; // a dark scan that stays as it is
+    drive(1);
+    TEST_ASSERT_EQUAL(ARGUS_SCAN_DARK, laser.fault);
+    dark = frozen = false;
+    drive(1);
+    TEST_ASSERT_EQUAL(ARGUS_SCAN_SOUND, laser.fault);
+}
+
+// Turning in place shows a frozen scan as well as driving does.
+void test_one_that_is_frozen_is_found_in_a_turn_on_the_spot(void) {
+    drive(1);
+    frozen = true;
+    for (int n = 0; n < 100 && !laser.news; n++) {
+        step(0, 4);
+    }
+    TEST_ASSERT_EQUAL(ARGUS_SCAN_FROZEN, laser.fault);
+}
+
+// More walls than are followed at a time crowd none out, and nothing is made of those that are left out.
+void test_with_more_walls_than_are_followed_a_healthy_one_is_left_alone(void) {
+    for (int i = 0; i < ARGUS_SCAN_WALLS; i++) {
+        laser.wall[i] = (argus_wall_t){.scans = 1, .last_mm = 4900, .bearing_cdeg = 17000};
+    }
+    drive(12);
+    TEST_ASSERT_EQUAL(ARGUS_SCAN_SOUND, laser.fault);
+}
+
+// A way ahead towards a single wall tells of the scale alone, and only where it is well off.
+void test_ahead_of_one_wall_the_scale_is_found_where_it_is_well_off(void) {
+    static const struct {
+        double scale;
+        bool found;
+    } by[] = {{0.8, true}, {1.0, false}, {0.96, false}};
+    for (size_t i = 0; i < sizeof by / sizeof by[0]; i++) {
+        setUp();
+        th = 0;
+        scale = by[i].scale;
+        for (int back = 0; back < 40 && !laser.news; back++) {
+            for (int n = 0; n < 60 && !laser.news; n++) {
+                step(back % 2 == 0 ? 30 : -30, 0);
+            }
+        }
+        TEST_ASSERT_EQUAL(by[i].found, laser.fault == ARGUS_SCAN_SCALED);
+        TEST_ASSERT_TRUE(by[i].found || laser.fault == ARGUS_SCAN_SOUND);
+    }
+}

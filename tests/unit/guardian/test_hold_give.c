@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: MIT
+// Rule under attack: what a client wants is given to the robot once and as far as it may be; what the outbox
+// has no room for stays due, and looks that a client has not asked for end where they may not be made.
+#include "guardian/hold.h"
+
+#include <string.h>
+
+#include "client.h"
+#include "health.h"
+#include "unity.h"
+
+static robot_t robot;
+static client_t client;
+static argus_t *core;
+static argus_outbox_t out;
+static argus_hold_client_t hold;
+static argus_grant_t grant;
+
+void setUp(void) {
+    const argus_config_t settings = robot_config_of(ARGUS_PROFILE_ARGUS);
+    robot_init(&robot, &settings, 1000);
+    robot.world = robot_world_segments;
+    robot_box(&robot, -4000, -4000, 4000, 4000);
+    client_init(&client, &robot);
+    client_run(&client, 4000, false);
+    client_open(&client);
+    client_say(&client, ARCOS_CMD_VEL, 1);
+    client_run(&client, 2000, true);
+    core = &robot.argus;
+    memset(&hold, 0, sizeof hold);
+    memset(&out, 0, sizeof out);
+    hold.setv_mm_s = 300;
+    grant = (argus_grant_t){core, &out, &core->events, &core->motion, &core->knowledge};
+}
+
+// The next that goes out: command and argument, -1: nothing.
+static int fetch(int32_t *argument) {
+    uint8_t packet[ARGUS_PACKET_MAX];
+    const size_t count = argus_outbox_fetch(&out, packet, sizeof packet);
+    *argument = count == 9 ? (packet[5] | packet[6] << 8) * (packet[4] == ARCOS_ARG_NEGATIVE ? -1 : 1) : 0;
+    return count > 0 ? packet[3] : -1;
+}
+
+static void expect(int command, int32_t argument) {
+    int32_t said = 0;
+    TEST_ASSERT_EQUAL(command, fetch(&said));
+    TEST_ASSERT_EQUAL_INT32(argument, said);
+}
+
+static void expect_nothing(void) {
+    int32_t said = 0;
+    TEST_ASSERT_EQUAL(-1, fetch(&said));
+}
+
+static void fill(void) {
+    while (argus_outbox_plain(&out, ARCOS_CMD_PULSE)) {
+    }
+    out.refused = 0;
+}
+
+static void want(argus_wish_way_t way, int32_t mm_s) {
+    hold.wish.way = (uint8_t)way;
+    hold.wish.mm_s = mm_s;
+}
+
+void test_a_speed_is_given_as_a_way_that_is_seen(void) {
+    int32_t mm = 0;
+    want(ARGUS_WISH_VEL, 250);
+    argus_hold_way(&grant, &hold);
+    expect(ARCOS_CMD_SETV, 250);
+    TEST_ASSERT_EQUAL(ARCOS_CMD_MOVE, fetch(&mm));
+    TEST_ASSERT_GREATER_THAN_INT32(1000, mm);
+    expect_nothing();
+    TEST_ASSERT_TRUE(hold.given.rolls && hold.given.moves);
+    TEST_ASSERT_FALSE(hold.way_due);
+}
+
+// Nothing is taken for given that did not go out, and all of it goes out with the next SIP.
+void test_what_the_outbox_has_no_room_for_stays_due(void) {
+    fill();
+    want(ARGUS_WISH_VEL, 250);
+    argus_hold_way(&grant, &hold);
+    TEST_ASSERT_TRUE(hold.way_due);
+    TEST_ASSERT_FALSE(hold.given.rolls || hold.given.moves);
+    TEST_ASSERT_EQUAL_INT32(0, hold.given.setv_mm_s);
+    argus_outbox_clear(&out);
+    argus_hold_watch(&grant, &hold);
+    TEST_ASSERT_FALSE(hold.way_due);
+    TEST_ASSERT_TRUE(hold.given.rolls);
+    fill();
+    want(ARGUS_WISH_VEL, 0);
+    argus_hold_way(&grant, &hold);
+    TEST_ASSERT_TRUE(hold.way_due && hold.given.rolls); // a stop that did not go out stops nothing
+    argus_outbox_clear(&out);
+    argus_hold_watch(&grant, &hold);
+    TEST_ASSERT_FALSE(hold.way_due || hold.given.rolls);
+}
+
+void test_a_pair_that_has_no_room_stays_due(void) {
+    fill();
+    hold.wish.paired = true;
+    want(ARGUS_WISH_VEL, 200);
+    argus_hold_way(&grant, &hold);
+    TEST_ASSERT_TRUE(hold.way_due);
+    TEST_ASSERT_EQUAL(0, hold.given.right + hold.given.left);
+}
+
+// A turn about one wheel rolls, too.
+void test_a_pair_with_one_wheel_at_rest_rolls(void) {
+    for (int side = -1; side <= 1; side += 2) {
+        setUp();
+        hold.wish.paired = true;
+        want(ARGUS_WISH_VEL, 40);
+        hold.wish.half_mm_s = side * 40;
+        argus_hold_way(&grant, &hold);
+        TEST_ASSERT_EQUAL(side > 0 ? 4 : 0, hold.given.right);
+        TEST_ASSERT_EQUAL(side > 0 ? 0 : 4, hold.given.left);
+        TEST_ASSERT_TRUE(hold.given.rolls);
+    }
+}
+
+// A robot without motors has not taken the order: it is given again when they are on.
+void test_without_motors_no_way_counts_as_given(void) {
+    want(ARGUS_WISH_VEL, 250);
+    argus_hold_way(&grant, &hold);
+    core->knowledge.flags = (uint16_t)(core->knowledge.flags & ~(unsigned)ARCOS_FLAG_MOTORS);
+    argus_hold_watch(&grant, &hold);
+    TEST_ASSERT_FALSE(hold.given.moves);
+    argus_outbox_clear(&out);
+    argus_hold_watch(&grant, &hold); // not each SIP again
+    TEST_ASSERT_EQUAL(0, out.length);
+    core->knowledge.flags = (uint16_t)(core->knowledge.flags | ARCOS_FLAG_MOTORS);
+    argus_hold_watch(&grant, &hold);
+    TEST_ASSERT_TRUE(hold.given.moves);
+}
+
+void test_a_stall_is_one_stop_and_nothing_is_wanted_any_more(void) {
+    want(ARGUS_WISH_VEL, 250);
+    argus_hold_way(&grant, &hold);
+    argus_outbox_clear(&out);
+    core->knowledge.stall_left = true;
+    argus_hold_watch(&grant, &hold);
+    expect(ARCOS_CMD_STOP, 0);
+    TEST_ASSERT_EQUAL(ARGUS_WISH_REST, hold.wish.way);
+    argus_hold_watch(&grant, &hold);
+    expect_nothing();
+}
+
+// ---- looks
+
+void test_a_straight_wish_repeated_does_not_end_the_looks(void) {
+    hold.given.weave.side = 1;
+    argus_hold_turn(&grant, &hold);
+    expect_nothing();
+    hold.wish.turn = ARGUS_WISH_RVEL; // another turn does
+    hold.wish.deg_s = 10;
+    argus_hold_turn(&grant, &hold);
+    expect(ARCOS_CMD_RVEL, 10);
+}
+
+// The heading is turned back to where it was; where that may not be, the turn is ended.
+void test_looks_end_on_the_heading_that_they_began_on(void) {
+    want(ARGUS_WISH_VEL, 0);
+    hold.given.weave.side = 1;
+    hold.given.base_cdeg = core->knowledge.pose.heading_cdeg + 900;
+    argus_hold_watch(&grant, &hold);
+    int32_t deg = 0;
+    TEST_ASSERT_EQUAL(ARCOS_CMD_HEAD, fetch(&deg));
+    TEST_ASSERT_INT_WITHIN(1, 9, deg);
+    TEST_ASSERT_EQUAL(0, hold.given.weave.side);
+}
+
+void test_looks_that_may_not_be_made_are_ended_where_the_heading_is(void) {
+    want(ARGUS_WISH_VEL, 0);
+    hold.given.weave.side = 1;
+    hold.given.base_cdeg = core->knowledge.pose.heading_cdeg + 900;
+    core->orders.stay = ARGUS_STAY_OPERATOR;
+    argus_hold_watch(&grant, &hold);
+    int32_t deg_s = 0;
+    int orders = 0;
+    for (int command = fetch(&deg_s); command >= 0; command = fetch(&deg_s), orders++) {
+        TEST_ASSERT_EQUAL(ARCOS_CMD_RVEL, command);
+        TEST_ASSERT_EQUAL_INT32(0, deg_s);
+    }
+    TEST_ASSERT_GREATER_THAN(0, orders);
+    TEST_ASSERT_EQUAL(0, hold.given.weave.side);
+    argus_hold_watch(&grant, &hold);
+    expect_nothing();
+}
+
+void test_a_pair_or_a_turn_ends_the_looks_without_another_order(void) {
+    for (int paired = 0; paired < 2; paired++) {
+        setUp();
+        hold.given.weave.side = 1;
+        hold.given.base_cdeg = core->knowledge.pose.heading_cdeg + 900;
+        hold.wish.paired = paired != 0;
+        hold.wish.turn = paired != 0 ? ARGUS_WISH_STRAIGHT : ARGUS_WISH_RVEL;
+        argus_hold_watch(&grant, &hold);
+        TEST_ASSERT_EQUAL(0, hold.given.weave.side);
+        int32_t deg = 0;
+        for (int command = fetch(&deg); command >= 0; command = fetch(&deg)) {
+            TEST_ASSERT_NOT_EQUAL(ARCOS_CMD_HEAD, command);
+        }
+    }
+}

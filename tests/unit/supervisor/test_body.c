@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+// Rule under attack: the body that answers is the one that is driven by: with another one the front leads
+// again, what was known of the sonars before is forgotten, and a record or a ring is taken only as far as it
+// fits.
+#include "supervisor/body.h"
+
+#include <string.h>
+
+#include "analysis/record.h"
+#include "behaviour/state.h"
+#include "health.h"
+#include "robot.h"
+#include "supervisor/manager.h"
+#include "unity.h"
+
+static robot_t robot;
+static argus_t *core;
+
+void setUp(void) {
+    const argus_config_t config = robot_config_of(ARGUS_PROFILE_ARGUS);
+    robot_init(&robot, &config, 1000);
+    robot.world = robot_world_segments;
+    robot_box(&robot, -3000, -3000, 3000, 3000);
+    robot_run(&robot, 6000);
+    core = &robot.argus;
+}
+
+static void meet(const char *subclass) {
+    strcpy(core->session.subclass, subclass);
+    argus_meet_body(core);
+}
+
+void test_another_body_is_met_with_its_front_ahead(void) {
+    for (int reversed = 0; reversed < 2; reversed++) {
+        setUp();
+        if (reversed != 0) {
+            core->knowledge.robot = argus_robot_other_end(core->knowledge.robot);
+        }
+        meet("p3at-sh");
+        TEST_ASSERT_EQUAL_PTR(argus_robot_find("p3at-sh"), core->knowledge.robot);
+        TEST_ASSERT_FALSE(core->knowledge.robot->reversed);
+        TEST_ASSERT_EQUAL(ARGUS_BAR_NONE, core->orders.bar);
+    }
+}
+
+void test_the_same_body_keeps_what_is_known_of_it(void) {
+    put_health(&core->knowledge.sonar[3], ARGUS_DISABLED, ARGUS_KIND_OFF, core->now_ms);
+    core->knowledge.robot = argus_robot_other_end(core->knowledge.robot);
+    meet("p3dx-sh");
+    TEST_ASSERT_EQUAL(ARGUS_DISABLED, core->knowledge.sonar[3].health);
+    TEST_ASSERT_TRUE(core->knowledge.robot->reversed);
+}
+
+// ... but what its own record says.
+void test_another_body_forgets_all_that_is_not_of_its_record(void) {
+    put_health(&core->knowledge.sonar[3], ARGUS_DISABLED, ARGUS_KIND_OFF, core->now_ms);
+    put_health(&core->knowledge.sonar[4], ARGUS_PROBATION, ARGUS_KIND_OFF, core->now_ms);
+    core->history.recorded = 1u << 4;
+    meet("p3at-sh");
+    TEST_ASSERT_EQUAL(ARGUS_UNKNOWN, core->knowledge.sonar[3].health);
+    TEST_ASSERT_EQUAL(ARGUS_PROBATION, core->knowledge.sonar[4].health);
+}
+
+void test_a_body_that_is_not_known_bars_and_a_known_one_lets_it_drive_again(void) {
+    meet("seekur");
+    TEST_ASSERT_EQUAL(ARGUS_BAR_UNKNOWN, core->orders.bar);
+    TEST_ASSERT_TRUE(core->orders.passive && core->orders.barred);
+    meet("p3dx-sh");
+    TEST_ASSERT_EQUAL(ARGUS_BAR_NONE, core->orders.bar);
+    TEST_ASSERT_FALSE(core->orders.passive || core->orders.barred);
+    core->orders.passive = true; // an operator wants it so: no body makes it active
+    meet("p3at-sh");
+    TEST_ASSERT_TRUE(core->orders.passive);
+}
+
+// ---- a record
+
+void test_a_record_that_comes_while_the_session_is_open_is_of_its_robot_or_ignored(void) {
+    static uint8_t record[ARGUS_RECORD_BYTES];
+    put_health(&core->knowledge.sonar[3], ARGUS_DISABLED, ARGUS_KIND_OFF, core->now_ms);
+    TEST_ASSERT_EQUAL(ARGUS_RECORD_BYTES, argus_record_save(core, record, sizeof record));
+    setUp();
+    TEST_ASSERT_TRUE(argus_record_load(core, record, sizeof record));
+    TEST_ASSERT_EQUAL(ARGUS_PROBATION, core->knowledge.sonar[3].health);
+    TEST_ASSERT_FALSE(core->history.loaded); // it is compared
+    setUp();
+    strcpy(core->session.name, "another");
+    TEST_ASSERT_TRUE(argus_record_load(core, record, sizeof record));
+    TEST_ASSERT_EQUAL(ARGUS_UNKNOWN, core->knowledge.sonar[3].health);
+    TEST_ASSERT_EQUAL_HEX32(0, core->history.recorded);
+}
+
+// ---- a ring
+
+void test_a_ring_with_a_fault_changes_nothing(void) {
+    static argus_storage_t storage;
+    static argus_robot_storage_t own;
+    static const argus_ring_t nameless = {.name = ""};
+    argus_config_t config;
+    argus_config_default(&config);
+    argus_t *const argus = argus_init(&storage, &config, 0);
+    const argus_robot_t *const before = argus->knowledge.robot;
+    TEST_ASSERT_EQUAL(ARGUS_RING_NAME, argus_set_ring(argus, &own, &nameless).fault);
+    TEST_ASSERT_EQUAL_PTR(before, argus->knowledge.robot);
+}
