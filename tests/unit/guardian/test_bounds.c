@@ -98,8 +98,9 @@ void test_s5_what_is_heard_on_the_way_bounds_the_speed_and_then_closes_it(void) 
 // A weak brake and a late link leave no speed that is worth a command.
 void test_s5_where_it_could_only_crawl_it_stands(void) {
     const argus_mask_t ahead = argus_robot_ahead(core->knowledge.robot);
-    read_all(ahead, core->config.object_range_mm + 40);
-    core->latency.late_ms = 10000;
+    read_all(ahead, core->config.object_range_mm + 80);
+    TEST_ASSERT_GREATER_THAN_INT32(0, free_mm_s(true));
+    core->latency.late_ms = 20000;
     expect_closed(true, ARGUS_BOUND_OBJECT);
 }
 

@@ -84,6 +84,11 @@ void test_a_record_that_comes_while_the_session_is_open_is_of_its_robot_or_ignor
     TEST_ASSERT_EQUAL(ARGUS_PROBATION, core->knowledge.sonar[3].health);
     TEST_ASSERT_FALSE(core->history.loaded); // it is compared
     setUp();
+    put_health(&core->knowledge.sonar[3], ARGUS_DISABLED, ARGUS_KIND_STUCK, core->now_ms);
+    TEST_ASSERT_TRUE(argus_record_load(core, record, sizeof record)); // what is known now is newer
+    TEST_ASSERT_EQUAL(ARGUS_DISABLED, core->knowledge.sonar[3].health);
+    TEST_ASSERT_EQUAL(ARGUS_KIND_STUCK, core->knowledge.sonar[3].kind);
+    setUp();
     strcpy(core->session.name, "another");
     TEST_ASSERT_TRUE(argus_record_load(core, record, sizeof record));
     TEST_ASSERT_EQUAL(ARGUS_UNKNOWN, core->knowledge.sonar[3].health);
