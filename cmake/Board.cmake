@@ -33,7 +33,8 @@ file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/built_config.c @ONLY CONTENT
      "#include \"board/memory.h\"\nconst char board_built_config[] =\n@config_text@;\n")
 
 # Optimised as one program, which also writes one call graph of it. An archive of such objects is of use to gcc alone.
-set(whole_program -flto -flto-partition=one -g)
+# The optimiser at the link notes its folder, too, which must not depend on where the tree was unpacked.
+set(whole_program -flto -flto-partition=one -g -ffile-prefix-map=${PROJECT_SOURCE_DIR}/=)
 set(call_graph "")
 if(ARGUS_STACK_USAGE)
     set(call_graph -fstack-usage -fcallgraph-info=su,da)

@@ -259,6 +259,7 @@ def build_in(tree: Path, run: Run) -> dict[str, str]:
         "libargus.a": tree / "build/release/libargus.a",
         f"argus-{BOARD}.hex": tree / f"build/{BOARD}/argus-{BOARD}.hex",
         f"argus-{BOARD}.bin": tree / f"build/{BOARD}/argus-{BOARD}.bin",
+        f"argus-{BOARD}.elf": tree / f"build/{BOARD}/argus-{BOARD}.elf",
     }
     return {name: hashlib.sha256(path.read_bytes()).hexdigest() for name, path in made.items()}
 
