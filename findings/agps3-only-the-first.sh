@@ -5,9 +5,9 @@
 # Version:   agps3 0.36.1.
 # Expected:  The lines of a stream come one after the other, whatever piece they arrive in.
 # Behaviour: For each message a new file is made of the socket. It reads all that has arrived, gives one line, and is
-#            forgotten with the rest. A message in two pieces is two lines, and neither is JSON.
+#            forgotten with the rest.
 # Hurts:     Anyone who reads every 0.2 s, as the threaded client does, while gpsd sends position, satellites and
-#            attitude within one: attitudes or positions never come. Read the socket by makefile() once, outside.
+#            attitude within one: what comes behind the first is not there. Read the socket by makefile() once, outside.
 set -eu
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

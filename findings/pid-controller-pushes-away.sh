@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# pid-controller pushes away from its target: with a gain of 1 and a target of 10 it answers 0 by -10, and its integral
+# pid-controller pushes away from its target: with a gain of 1 and a target of 10 it answers 4 by -6, and its integral
 # has no memory.
 #
 # Version:   pid-controller 0.2.0, six 1.17.0.
@@ -45,4 +45,4 @@ cat >expected <<'END'
 {'d': 1}, target 10, values 4, 4, 4, 6: [-4.0, 0.0, 0.0, -2.0]
 END
 diff expected seen || { echo "CHANGED: pid-controller-pushes-away" >&2; exit 1; }
-echo "PASS: a value below the target is answered by -10"
+echo "PASS: a value below the target is answered by -6"
