@@ -23,7 +23,8 @@ setup() {
             discoverySimulator==1.0.0 \
             PyQt5==5.15.11 \
             PyQt5-sip==12.17.0 \
-            PyQt5-Qt5==5.15.17 || return 1
+            PyQt5-Qt5==5.15.17 &&
+        QT_QPA_PLATFORM=offscreen venv/bin/python -c 'import PyQt5.QtWidgets' || return 1
 }
 setup >setup.log 2>&1 || { cat setup.log >&2; echo "NOT RUN: the packages cannot be had" >&2; exit 2; }
 
