@@ -9,7 +9,7 @@
 #            the reading. Of the name of an interface the digits at its end are the channel, so can0, vcan0 and slcan0
 #            are all 0, and can_left is none.
 # Hurts:     Anyone who looks for faults of a bus, or records two of them: a log full of errors has none, and frames of
-#            a test bus are taken for those of the robot.
+#            a test bus are taken for those of the robot. grep finds the errors in the log: their numbers begin with 2.
 set -eu
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

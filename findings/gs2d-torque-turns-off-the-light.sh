@@ -7,7 +7,7 @@
 # Behaviour: Two bytes are written, and the one at 65 is the LED, which becomes 0. The class has no way to switch it on
 #            again.
 # Hurts:     Anyone who shows by the LEDs which servo is which, or a fault: all that were on are dark after the torque
-#            is on.
+#            is on. dynamixel-sdk writes the one byte.
 set -eu
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

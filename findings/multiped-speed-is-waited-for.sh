@@ -8,7 +8,7 @@
 #            is computed from the speed that was asked for, so at 500 the next step is sent long before a servo has
 #            arrived.
 # Hurts:     Anyone who walks slowly on purpose, or fast: at 50 the robot jerks and waits, at 500 its legs never reach a
-#            foothold.
+#            foothold. Ask for 100, the slowest of the four.
 set -eu
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

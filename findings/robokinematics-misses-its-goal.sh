@@ -8,6 +8,7 @@
 # Behaviour: In three coefficients the first and the last acceleration are exchanged. With both at 0, the default, or
 #            both equal, the end is right; otherwise it is off by half of their difference times the square of the time.
 # Hurts:     Anyone who joins pieces without a jerk: each piece ends elsewhere, and the next one starts with a jump.
+#            Give both ends the same acceleration.
 set -eu
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
