@@ -20,10 +20,11 @@ static int32_t size_pm(const argus_knowledge_t *const knowledge, const argus_way
     return knowledge->robot->reversed ? -pm : pm;
 }
 
+// Of a size `a` that counts.
 static bool are_alike(const int32_t a, const int32_t b) {
+    ARGUS_ASSERT(argus_abs(a) >= LEAST_PM);
     const int32_t room = argus_max(ALIKE_PM, argus_max(argus_abs(a), argus_abs(b)) / 3);
-    return argus_abs(a) >= LEAST_PM && argus_abs(b) >= LEAST_PM && argus_abs(a - b) <= room &&
-           (a > 0) == (b > 0);
+    return argus_abs(b) >= LEAST_PM && argus_abs(a - b) <= room && (a > 0) == (b > 0);
 }
 
 // The first two pieces count as one: what is read at the seam of two cancels.

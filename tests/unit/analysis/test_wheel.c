@@ -93,3 +93,10 @@ void test_no_piece_is_too_odd(void) {
     }
     TEST_ASSERT_EQUAL_INT16(0, wheel.short_pm);
 }
+
+// Two pieces that differ by little, to either side, are no wheel: neither of them is named.
+void test_pieces_that_bend_to_either_side_name_no_wheel(void) {
+    TEST_ASSERT_EQUAL_INT(ARGUS_WHEEL_SAME, take(1000, 5));
+    TEST_ASSERT_EQUAL_INT(ARGUS_WHEEL_SAME, take(1000, -5));
+    TEST_ASSERT_EQUAL_INT(ARGUS_KIND_NONE, wheel.kind);
+}

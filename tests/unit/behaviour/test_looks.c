@@ -403,3 +403,19 @@ void test_what_looks_cannot_prove_is_looked_at_twice(void) {
     TEST_ASSERT_TRUE(looks_at_the_goal(3) > 2);
     finish();
 }
+
+// An operator's stop holds looks, too, whatever they would show.
+void test_no_look_is_due_while_an_operator_has_stopped_the_robot(void) {
+    start_in(-3000, -3000, 3000, 3000);
+    robot_run(&robot, 6000);
+    argus_t *const core = &robot.argus;
+    core->looks.asked = true;
+    TEST_ASSERT_TRUE(argus_look_pays(core));
+    core->orders.stay = ARGUS_STAY_OPERATOR;
+    TEST_ASSERT_FALSE(argus_look_pays(core));
+    core->orders.stay = 0;
+    core->knowledge.heard = 1u << 7; // abeam
+    TEST_ASSERT_NOT_EQUAL(0, argus_to_try(core));
+    core->orders.stay = ARGUS_STAY_OPERATOR;
+    TEST_ASSERT_EQUAL(0, argus_to_try(core));
+}

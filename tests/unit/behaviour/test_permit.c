@@ -99,3 +99,8 @@ void test_a_bumper_bars_the_way_to_it_and_each_turn(void) {
         TEST_ASSERT_EQUAL_INT(ARGUS_PERMIT_BUMPER, ask((argus_mover_t)mover, ARGUS_WANTS_TURN, 1));
     }
 }
+
+void test_without_a_session_nothing_may(void) {
+    robot.argus.session.state = ARGUS_SESSION_SYNC1;
+    check_all(ARGUS_PERMIT_NO_ROBOT, ARGUS_PERMIT_NO_ROBOT, ARGUS_PERMIT_NO_ROBOT);
+}

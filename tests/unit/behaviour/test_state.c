@@ -149,3 +149,20 @@ void test_instead_of_a_turn_it_says_what_bars_it(void) {
     TEST_ASSERT_EQUAL(ARGUS_EV_TURN_BLOCKED, intent.event);
     TEST_ASSERT_EQUAL_INT32(0, intent.value);
 }
+
+// One that creeps takes the way that it came, if nothing is pressed there; one that may command nothing,
+// none.
+void test_the_way_back_is_felt_where_it_creeps_and_asked_for_by_an_active_robot_only(void) {
+    begin_in(3000, 3000);
+    argus_guard_t guard = argus_guard(core);
+    TEST_ASSERT_TRUE(argus_guard_may_back_off(&guard));
+    guard.active = false;
+    TEST_ASSERT_FALSE(argus_guard_may_back_off(&guard));
+    put_health(&core->knowledge.sonar[12], ARGUS_DISABLED, ARGUS_KIND_OFF, core->now_ms);
+    guard = argus_guard(core);
+    TEST_ASSERT_FALSE(argus_guard_may_back(&guard)); // not all that look back are left
+    guard.creeps = true;
+    TEST_ASSERT_TRUE(argus_guard_may_back(&guard));
+    core->knowledge.bumpers_rear = 8;
+    TEST_ASSERT_FALSE(argus_guard_may_back(&guard));
+}

@@ -79,6 +79,27 @@ void test_s2_after_a_sweep_what_was_touched_ahead_stops_the_step(void) {
     TEST_ASSERT_EQUAL(ARGUS_WAY_REFUSE, intent.way);
 }
 
+// S6: one that an operator wants looked at again is, before the next step.
+void test_s6_after_a_sweep_an_open_suspect_is_checked_before_the_step(void) {
+    for (int suspect = 0; suspect < 2; suspect++) {
+        const argus_config_t paper = robot_config_of(ARGUS_PROFILE_PAPER);
+        setUp();
+        core->rules = argus_profile(&paper);
+        core->base.taken = true;
+        core->motion.settled = true;
+        core->motion.mark = (argus_mark_t){0};
+        core->travel.swept = true;
+        core->travel.drive.done = true;
+        core->travel.drive.smallest_mm = 4000;
+        if (suspect != 0) {
+            put_health(&core->knowledge.sonar[4], ARGUS_SUSPECT, ARGUS_KIND_NONE, core->now_ms);
+        }
+        run(argus_run_sweeping);
+        TEST_ASSERT_EQUAL(suspect != 0 ? ARGUS_DO_CHECK : ARGUS_DO_STEP, intent.act);
+        TEST_ASSERT_FALSE(intent.full);
+    }
+}
+
 // ---- a short wheel
 
 static void shorten(int permille) {
@@ -166,6 +187,15 @@ static void begin_creeping(void) {
     core->travel.heeded_ms = core->now_ms;
     const argus_guard_t guard = argus_guard(core);
     TEST_ASSERT_TRUE(argus_guard_may_creep(&guard));
+}
+
+void test_without_motors_it_does_not_creep_on(void) {
+    begin_creeping();
+    core->knowledge.flags = (uint16_t)(core->knowledge.flags & ~(unsigned)ARCOS_FLAG_MOTORS);
+    TEST_ASSERT_TRUE(argus_guard(core).creeps);
+    run(argus_run_creeping);
+    TEST_ASSERT_EQUAL(ARGUS_DO_CHECK, intent.act);
+    TEST_ASSERT_EQUAL(ARGUS_STOP_STOP, intent.stop);
 }
 
 void test_it_creeps_on_by_a_short_way(void) {

@@ -84,3 +84,12 @@ void test_a_turn_leaves_the_way_and_the_way_the_turn(void) {
     TEST_ASSERT_EQUAL_INT32(-20, wish.deg_s);
     TEST_ASSERT_EQUAL_UINT8(ARGUS_WISH_RVEL, wish.turn);
 }
+
+void test_a_heading_is_a_motion_whichever_it_is_and_a_speed_of_nothing_is_none(void) {
+    const argus_said_t north = {.topic = ARGUS_TOPIC_TURN, .command = ARCOS_CMD_HEAD, .argument = 0};
+    const argus_said_t stand = {.topic = ARGUS_TOPIC_WAY, .command = ARCOS_CMD_VEL, .argument = 0};
+    const argus_said_t drive = {.topic = ARGUS_TOPIC_WAY, .command = ARCOS_CMD_VEL, .argument = -1};
+    TEST_ASSERT_TRUE(argus_wish_moves(&north));
+    TEST_ASSERT_FALSE(argus_wish_moves(&stand));
+    TEST_ASSERT_TRUE(argus_wish_moves(&drive));
+}
