@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack: what is wrong with a laser as a whole is found by its scans and the way alone, and a
 // healthy one is left alone.
+#include "awareness/evidence.h"
 #include "awareness/laser.h"
 
 #include <math.h>
@@ -244,4 +245,20 @@ void test_ahead_of_one_wall_the_scale_is_found_where_it_is_well_off(void) {
         TEST_ASSERT_EQUAL(by[i].found, laser.fault == ARGUS_SCAN_SCALED);
         TEST_ASSERT_TRUE(by[i].found || laser.fault == ARGUS_SCAN_SOUND);
     }
+}
+
+// What is found of the whole is forgotten with any of its sectors, and with no sonar beside them.
+void test_a_retest_of_a_sector_is_one_of_the_laser(void) {
+#if ARGUS_LASER
+    static argus_evidence_t evidence;
+    evidence.laser.sectors = (argus_mask_t)0xFF00u;
+    evidence.laser.fault = ARGUS_SCAN_FROZEN;
+    evidence.laser.count = 3;
+    argus_evidence_forget(&evidence, 3);
+    TEST_ASSERT_EQUAL(ARGUS_KIND_STUCK, argus_evidence_laser(&evidence, 9));
+    TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, argus_evidence_laser(&evidence, 3));
+    argus_evidence_forget(&evidence, 9);
+    TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, argus_evidence_laser(&evidence, 9));
+    TEST_ASSERT_EQUAL(0, evidence.laser.count);
+#endif
 }

@@ -251,3 +251,15 @@ void test_the_best_explanation_so_far_is_told_with_its_share(void) {
     c->score[ARGUS_TEST_GARBAGE] = (int16_t)(argus_bounds[ARGUS_TEST_GARBAGE].convincing / 5);
     TEST_ASSERT_EQUAL(ARGUS_KIND_GARBAGE, argus_names_best(&e, SONAR, &percent)); // which is more
 }
+
+// Exactly as much as a name takes is enough for it, and one less is not.
+void test_a_name_takes_exactly_what_it_takes(void) {
+    for (int test = 0; test < ARGUS_TESTS; test++) {
+        setUp();
+        give_ground();
+        c->score[test] = argus_bounds[test].naming;
+        TEST_ASSERT_EQUAL(kind_of[test], named());
+        c->score[test] = (int16_t)(argus_bounds[test].naming - 1);
+        TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, named());
+    }
+}

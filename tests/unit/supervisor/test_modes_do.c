@@ -214,3 +214,16 @@ void test_a_check_sends_one_stop_at_most(void) {
         TEST_ASSERT_FALSE(core->motion.failed); // nothing failed that is only waited for
     }
 }
+
+// S7: a turn that something is in the way of ends at once, and a full check follows.
+void test_s7_a_turn_that_is_ended_is_followed_by_a_full_check(void) {
+    core->motion.kind = ARGUS_MOTION_TURN;
+    core->motion.settled = false;
+    TEST_ASSERT_TRUE(core->checked);
+    const argus_intent_t end = {.act = ARGUS_DO_END_TURN, .at = {300, 100}};
+    argus_do(core, &end);
+    TEST_ASSERT_EQUAL(1, sent(ARCOS_CMD_STOP));
+    TEST_ASSERT_EQUAL(1, events(ARGUS_EV_TURN_BLOCKED));
+    TEST_ASSERT_EQUAL(ARGUS_MODE_CHECKING, core->mode);
+    TEST_ASSERT_EQUAL(core->config.suspect_readings, core->checking.rounds);
+}
