@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 from harness import Bench, run_argusd
@@ -40,10 +42,11 @@ def sonar_proves(faults: Sequence[str]) -> bool:
     ids=["healthy", "two dead", "stuck", "offset", "aside", "silent"],
 )
 def test_each_broken_sonar_is_named(
-    bench: Bench, faults: Sequence[str], broken: dict[int, tuple[str, ...]]
+    bench: Bench, faults: Sequence[str], broken: dict[int, tuple[str, ...]], tmp_path: Path
 ) -> None:
     sim = bench.sim("lab", *faults)
-    code, rows, errors = survey(bench)
+    picture = tmp_path / "ring.svg"
+    code, rows, errors = survey(bench, "--picture", str(picture))
     assert code == (FAULTS if broken else OK), errors
     found = {number: row for number, row in rows.items() if row["fault"]}
     assert set(found) == set(broken), found
@@ -52,6 +55,9 @@ def test_each_broken_sonar_is_named(
         if sonar_proves(faults):
             assert str(found[number]["verdict"]).startswith("broken: "), found[number]
     assert len(rows) == 16
+    drawn = [text for element in ElementTree.parse(picture).iter() if (text := element.text)]
+    for number, row in rows.items():
+        assert f"{number}: {row['verdict']}, {row['sure']}" in drawn
     start, end = sim.of("state")[0], sim.now
     assert abs(end["x_mm"] - start["x_mm"]) < 50
     assert abs(end["y_mm"] - start["y_mm"]) < 50
@@ -66,10 +72,13 @@ def test_each_broken_sonar_is_named(
     ],
     ids=["unknown body", "bumper"],
 )
-def test_where_it_may_not_turn_it_says_why_and_does_not(bench: Bench, arguments: list[str], why: str) -> None:
+def test_where_it_may_not_turn_it_says_why_and_does_not(
+    bench: Bench, arguments: list[str], why: str, tmp_path: Path
+) -> None:
     sim = bench.sim("lab", extra=arguments)
-    code, rows, errors = survey(bench)
+    code, rows, errors = survey(bench, "--picture", str(tmp_path / "ring.svg"))
     assert (code, rows) == (MISSION, {})
+    assert not (tmp_path / "ring.svg").exists()
     assert why in errors
     assert max(abs(state["w_deg_s"]) for state in sim.of("state")) < 1
 
@@ -80,6 +89,8 @@ def test_what_contradicts_a_survey_is_refused_before_the_robot_is_spoken_to(benc
         (("--survey",), "add --active"),
         (("--survey", "--active", "--passive"), "contradict"),
         (("--survey", "--active", "--goal", "1000,0"), "leave out --course and --goal"),
+        (("--survey", "--active", "--picture", "ring.png"), "ends in .svg"),
+        (("--picture", "ring.svg"), "add --survey"),
     ):
         told = run_argusd("--link", link, *words)
         assert told.returncode == USAGE

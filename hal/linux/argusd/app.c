@@ -7,6 +7,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "argusd.h"
 #include "attach.h"
@@ -296,6 +298,33 @@ static void drop_tape(void) {
     tape_close(&loop.tape, unused, sizeof unused);
 }
 
+// Ends the picture; one of a survey that did not come about is not left behind.
+static bool close_picture(FILE *picture, const char *path) {
+    struct stat it;
+    const bool is_empty = fflush(picture) == 0 && fstat(fileno(picture), &it) == 0 && it.st_size == 0;
+    if (is_empty) {
+        unlink(path);
+    }
+    const bool is_good = ferror(picture) == 0;
+    return fclose(picture) == 0 && is_good;
+}
+
+// A picture that cannot be written is told before the robot turns.
+static argusd_exit_t run_survey(uint32_t wait_ms) {
+    survey_output_t output = {.table = stdout, .json = options.json};
+    const char *const path = options.picture_path;
+    if (path != NULL && (output.picture = fopen(path, "ae")) == NULL) {
+        text_refuse(message, sizeof message, "--picture %s: %s", path, strerror(errno));
+        return ARGUSD_EXIT_USAGE;
+    }
+    argusd_exit_t code = survey_run(&loop.driver, wait_ms, signals_fd(), &output, message, sizeof message);
+    if (path != NULL && !close_picture(output.picture, path)) {
+        text_refuse(message, sizeof message, "--picture %s: %s", path, strerror(errno));
+        code = ARGUSD_EXIT_INTERNAL;
+    }
+    return code;
+}
+
 // --check and --survey.
 static argusd_exit_t run_check(hal_link_t link, hal_clock_t clock) {
     const uint32_t wait_ms = options.has_wait ? options.wait_ms : CHECK_ANSWER_MS;
@@ -311,11 +340,10 @@ static argusd_exit_t run_check(hal_link_t link, hal_clock_t clock) {
     loop.driver.tap = tape_tap(&loop.tape);
     driver_attach(&loop.driver, link);
     message[0] = '\0';
-    const argusd_exit_t code =
-        options.action == OPTIONS_SURVEY
-            ? survey_run(&loop.driver, wait_ms, signals_fd(), options.json, stdout, message, sizeof message)
-            : check_run(&loop.driver, &precedence, wait_ms, signals_fd(), options.json, stdout, message,
-                        sizeof message);
+    const argusd_exit_t code = options.action == OPTIONS_SURVEY
+                                   ? run_survey(wait_ms)
+                                   : check_run(&loop.driver, &precedence, wait_ms, signals_fd(), options.json,
+                                               stdout, message, sizeof message);
     if (message[0] != '\0') {
         complain(code);
     }

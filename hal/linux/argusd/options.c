@@ -41,6 +41,7 @@ enum {
     OPT_STATUS,
     OPT_CHECK,
     OPT_SURVEY,
+    OPT_PICTURE,
     OPT_LIST_EVENTS,
     OPT_LIST_CONFIG,
     OPT_EXAMPLE_CONFIG,
@@ -78,6 +79,7 @@ static const struct option table[] = {
     {"status", required_argument, NULL, OPT_STATUS},
     {"check", no_argument, NULL, OPT_CHECK},
     {"survey", no_argument, NULL, OPT_SURVEY},
+    {"picture", required_argument, NULL, OPT_PICTURE},
     {"list-events", no_argument, NULL, OPT_LIST_EVENTS},
     {"list-config", no_argument, NULL, OPT_LIST_CONFIG},
     {"example-config", no_argument, NULL, OPT_EXAMPLE_CONFIG},
@@ -234,6 +236,9 @@ static bool take_text(options_t *options, int option) {
         return true;
     case OPT_RING:
         options->ring_path = optarg;
+        return true;
+    case OPT_PICTURE:
+        options->picture_path = optarg;
         return true;
     default:
         return false;
@@ -394,6 +399,21 @@ static bool agree_on_check(const options_t *options, const message_t *message) {
     return options->action != OPTIONS_CHECK || keeps(rules, sizeof rules / sizeof rules[0], message);
 }
 
+static bool is_svg(const char *path) {
+    static const char end[] = ".svg";
+    const size_t length = strlen(path);
+    return length >= sizeof end && strcmp(path + length - (sizeof end - 1), end) == 0;
+}
+
+static bool agree_on_picture(const options_t *options, const message_t *message) {
+    const char *const path = options->picture_path;
+    const rule_t rules[] = {
+        {path != NULL && options->action != OPTIONS_SURVEY, "--picture is of a survey; add --survey"},
+        {path != NULL && !is_svg(path), "--picture draws an SVG; give a name that ends in .svg"},
+    };
+    return keeps(rules, sizeof rules / sizeof rules[0], message);
+}
+
 static bool agree_on_survey(const options_t *options, const message_t *message) {
     const rule_t rules[] = {
         {options->passive, "--survey turns the robot; leave out --passive"},
@@ -440,7 +460,8 @@ static bool agree(const options_t *options, const message_t *message) {
         return true;
     }
     return agree_on_link(options, message) && agree_on_check(options, message) &&
-           agree_on_survey(options, message) && agree_on_ports(options, message);
+           agree_on_survey(options, message) && agree_on_picture(options, message) &&
+           agree_on_ports(options, message);
 }
 
 bool options_parse(options_t *options, int argc, char **argv, char *message_text, size_t capacity) {

@@ -40,6 +40,7 @@ typedef struct {
     bool control_beyond_loopback;
     bool inject;
     const char *ring_path;
+    const char *picture_path;
     const char *robot;        // a choice of the setting of that name
     hal_can_spec_t telemetry; // interface "": not given
     bool no_telemetry;

@@ -88,6 +88,7 @@ static void print_running(FILE *out) {
         "                     sonar and how sure it is, leave; where the robot may not turn it says why. Any "
         "link\n"
         "                     but TCP to this machine needs --active\n"
+        "  --picture FILE.svg ... and draw the ring, each sonar in the colour of its verdict\n"
         "  --json             one JSON object per line on standard output\n"
         "  --plain            no screen on a terminal, a line per event instead\n"
         "  --status MS        time between status lines, 0 for none (default 500 with --json, else 2000)\n"

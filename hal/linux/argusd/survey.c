@@ -3,9 +3,11 @@
 #include "survey.h"
 
 #include <stdarg.h>
+#include <unistd.h>
 
 #include "check.h"
 #include "json.h"
+#include "survey_picture.h"
 #include "survey_views.h"
 #include "text.h"
 
@@ -18,6 +20,7 @@
 #define FLAT_MM 25 // readings of all headings within so much are told as flat
 #define NEVER 0xFFFFu
 #define LIKELY 90 // percent of a verdict
+#define SUMMARY_MAX 96
 
 typedef enum { PHASE_MEET, PHASE_READY, PHASE_TURN, PHASE_DWELL, PHASE_VERIFY, PHASE_DONE } phase_t;
 
@@ -198,16 +201,20 @@ static void step(survey_t *self, uint32_t wait_ms) {
 typedef struct {
     char verdict[64];
     char sure[32];
-    bool is_fault;
+    survey_state_t state;
 } verdict_t;
+
+static bool is_fault(const verdict_t *verdict) {
+    return verdict->state >= SURVEY_SUSPECT;
+}
 
 static bool is_flat(const trace_t *trace) {
     return trace->echoed > STEPS / 2 && trace->most_mm - trace->least_mm <= FLAT_MM;
 }
 
-__attribute__((format(printf, 4, 5))) static verdict_t found_as(bool is_fault, const char *sure, int percent,
-                                                                const char *format, ...) {
-    verdict_t found = {.is_fault = is_fault};
+__attribute__((format(printf, 4, 5))) static verdict_t found_as(survey_state_t state, const char *sure,
+                                                                int percent, const char *format, ...) {
+    verdict_t found = {.state = state};
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(found.verdict, sizeof found.verdict, format, arguments);
@@ -248,16 +255,16 @@ static verdict_t unblamed(const survey_t *self, int sonar) {
     const trace_t *const trace = &self->trace[sonar];
     const bool judged = self->status.health[sonar] == ARGUS_HEALTHY;
     if (trace->reported == 0 || self->status.health[sonar] == ARGUS_STALE) {
-        return found_as(true, "certain", 0, "gives no reading");
+        return found_as(SURVEY_BROKEN, "certain", 0, "gives no reading");
     }
     if (is_flat(trace)) {
-        return found_as(true, "same reading", 0, "suspect, perhaps stuck");
+        return found_as(SURVEY_SUSPECT, "same reading", 0, "suspect, perhaps stuck");
     }
     if (trace->echoed == 0) {
-        return found_as(false, "open", 0, "hears nothing, which may be right here");
+        return found_as(SURVEY_OPEN, "open", 0, "hears nothing, which may be right here");
     }
-    return judged ? found_as(false, NULL, 100 - self->doubts.percent[sonar], "healthy")
-                  : found_as(false, "open", 0, "not judged");
+    return judged ? found_as(SURVEY_HEALTHY, NULL, 100 - self->doubts.percent[sonar], "healthy")
+                  : found_as(SURVEY_OPEN, "open", 0, "not judged");
 }
 
 static verdict_t verdict_of(const survey_t *self, int sonar) {
@@ -265,16 +272,18 @@ static verdict_t verdict_of(const survey_t *self, int sonar) {
     const argus_fault_kind_t kind = kind_of(self, sonar);
     const survey_match_t match = match_of(self, sonar);
     if (survey_proves(&match) != ARGUS_KIND_NONE) {
-        verdict_t found = found_as(true, "", 0, "broken: %s", argus_name(ARGUS_NAME_KIND, (int)kind));
+        verdict_t found =
+            found_as(SURVEY_BROKEN, "", 0, "broken: %s", argus_name(ARGUS_NAME_KIND, (int)kind));
         snprintf(found.sure, sizeof found.sure, "proven, %d of %d differ", match.compared - match.agreed,
                  match.compared);
         return found;
     }
     switch (self->status.health[sonar]) {
     case ARGUS_DISABLED:
-        return found_as(true, "proven", 0, "broken: %s", argus_name(ARGUS_NAME_KIND, (int)kind));
+        return found_as(SURVEY_BROKEN, "proven", 0, "broken: %s", argus_name(ARGUS_NAME_KIND, (int)kind));
     case ARGUS_SUSPECT:
-        return found_as(true, NULL, percent, "suspect, %s %s", percent >= LIKELY ? "likely" : "perhaps",
+        return found_as(SURVEY_SUSPECT, NULL, percent, "suspect, %s %s",
+                        percent >= LIKELY ? "likely" : "perhaps",
                         kind == ARGUS_KIND_NONE ? "anything" : argus_name(ARGUS_NAME_KIND, (int)kind));
     default:
         return unblamed(self, sonar);
@@ -299,9 +308,20 @@ static void put_row(const survey_t *self, int sonar, FILE *out) {
 static int faults_of(const survey_t *self) {
     int faults = 0;
     for (int i = 0; i < self->status.sonars; i++) {
-        faults += is_there(self, i) && verdict_of(self, i).is_fault;
+        const verdict_t found = verdict_of(self, i);
+        faults += is_there(self, i) && is_fault(&found);
     }
     return faults;
+}
+
+static void summarize(const survey_t *self, char *text, size_t capacity) {
+    const int faults = faults_of(self);
+    char found[48] = "no sonar is broken";
+    if (faults > 0) {
+        snprintf(found, sizeof found, "%d sonar%s %s broken or a suspect", faults, faults == 1 ? "" : "s",
+                 faults == 1 ? "is" : "are");
+    }
+    snprintf(text, capacity, "%d headings of %d; %s", self->headings, STEPS + 1, found);
 }
 
 static void tell_plain(const survey_t *self, FILE *out) {
@@ -311,11 +331,28 @@ static void tell_plain(const survey_t *self, FILE *out) {
             put_row(self, i, out);
         }
     }
-    const int faults = faults_of(self);
-    fprintf(out, "%d headings of %d; ", self->headings, STEPS + 1);
-    faults == 0 ? fprintf(out, "no sonar is broken\n")
-                : fprintf(out, "%d sonar%s %s broken or a suspect\n", faults, faults == 1 ? "" : "s",
-                          faults == 1 ? "is" : "are");
+    char summary[SUMMARY_MAX];
+    summarize(self, summary, sizeof summary);
+    fprintf(out, "%s\n", summary);
+}
+
+static void draw(const survey_t *self, FILE *out) {
+    verdict_t found[ARGUS_SONARS];
+    survey_mark_t marks[ARGUS_SONARS];
+    char summary[SUMMARY_MAX];
+    int count = 0;
+    for (int i = 0; i < self->status.sonars; i++) {
+        if (is_there(self, i)) {
+            found[i] = verdict_of(self, i);
+            marks[count++] = (survey_mark_t){i, self->status.bearing_deg[i], found[i].state, found[i].verdict,
+                                             found[i].sure};
+        }
+    }
+    summarize(self, summary, sizeof summary);
+    if (ftruncate(fileno(out), 0) != 0) { // what was there before
+        return;
+    }
+    survey_picture_put(out, marks, count, summary);
 }
 
 static void tell_json(const survey_t *self, FILE *out) {
@@ -350,21 +387,25 @@ static void tell_json(const survey_t *self, FILE *out) {
         json_name(&json, "sure");
         json_string(&json, found.sure);
         json_name(&json, "fault");
-        json_bool(&json, found.is_fault);
+        json_bool(&json, is_fault(&found));
         json_close(&json, '}');
         fprintf(out, "%s\n", line);
     }
 }
 
 // The exit code, and why the survey did not come to its end.
-static argusd_exit_t conclude(const survey_t *self, bool json, FILE *out, char *message, size_t capacity) {
+static argusd_exit_t conclude(const survey_t *self, const survey_output_t *output, char *message,
+                              size_t capacity) {
     const char *const address = hal_link_describe(&self->driver->link);
     const char *const why = self->refusal != NULL ? self->refusal : "it did not come to rest in time";
     if (self->headings <= 1 && self->ran_out) {
         text_refuse(message, capacity, "%s: no survey, as the robot may not turn: %s", address, why);
         return ARGUSD_EXIT_MISSION;
     }
-    json ? tell_json(self, out) : tell_plain(self, out);
+    output->json ? tell_json(self, output->table) : tell_plain(self, output->table);
+    if (output->picture != NULL) {
+        draw(self, output->picture);
+    }
     if (self->ran_out || self->headings <= STEPS) {
         text_refuse(message, capacity, "%s: the survey ended on heading %d of %d: %s", address,
                     self->headings, STEPS + 1, self->ran_out ? why : "it was ended");
@@ -373,7 +414,7 @@ static argusd_exit_t conclude(const survey_t *self, bool json, FILE *out, char *
     return faults_of(self) > 0 ? ARGUSD_EXIT_FAULTS : ARGUSD_EXIT_OK;
 }
 
-argusd_exit_t survey_run(driver_t *driver, uint32_t wait_ms, int cancel_fd, bool json, FILE *out,
+argusd_exit_t survey_run(driver_t *driver, uint32_t wait_ms, int cancel_fd, const survey_output_t *output,
                          char *message, size_t capacity) {
     survey_t self = {.driver = driver, .start_ms = hal_clock_now_ms(&driver->clock)};
     for (int i = 0; i < ARGUS_SONARS; i++) {
@@ -396,7 +437,7 @@ argusd_exit_t survey_run(driver_t *driver, uint32_t wait_ms, int cancel_fd, bool
     if (self.phase == PHASE_DONE && self.headings == 0 && !self.ran_out) {
         code = check_explain_silence(driver, now_of(&self) - self.start_ms, message, capacity);
     } else {
-        code = conclude(&self, json, out, message, capacity);
+        code = conclude(&self, output, message, capacity);
     }
     check_leave(driver);
     return code;

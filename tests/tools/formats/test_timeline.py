@@ -11,7 +11,10 @@ from pathlib import Path
 import pytest
 from argus_tools.chunks import ROBOT_TO_CLIENT, Chunk, DamageList
 from argus_tools.formats import open_log
-from argus_tools.formats.timeline import DAY_S, SECOND_MOST, YEAR_S, Timeline, Wrapping
+from argus_tools.formats.timeline import DAY_S, SECOND_MOST, STANDS_BYTES, YEAR_S, Timeline, Wrapping
+
+
+SIP_BYTES = 50
 
 
 class Reader:
@@ -113,6 +116,36 @@ def test_a_second_that_never_ends_is_not_held() -> None:
     assert found[:4] == [7.0, 7.5, 8.0, 8.5]
     assert found[-2:] == [12.0, 12.5]
     assert [entry.what for entry in damage if "stands at 11.0" in entry.what]
+
+
+@pytest.mark.parametrize("is_followed", [False, True], ids=["file", "followed"])
+@pytest.mark.parametrize(
+    ("before", "behind"), [([], []), ([5.1, 5.2, 5.3], []), ([5.1, 5.2], [99.5, 99.6]), ([5.0, 6.0], [])]
+)
+def test_a_clock_that_stands_gives_no_times(
+    before: list[float], behind: list[float], is_followed: bool
+) -> None:
+    stand = 7.25
+    data = bytes(SIP_BYTES)
+    chunks = [Chunk(t, ROBOT_TO_CLIENT, data, 0) for t in (*before, *[stand] * 200, *behind)]
+    damage = DamageList()
+    found = [chunk.t for chunk in Timeline(chunks, damage, is_followed)]
+    assert found[: len(before)] == before
+    assert found[len(found) - len(behind) :] == behind
+    timed = found[len(before) : len(found) - len(behind)].count(stand)
+    assert timed * SIP_BYTES <= STANDS_BYTES
+    assert timed == 0 or before or is_followed, "all of the log is known to stand"
+    assert set(found) - {*before, *behind} <= {stand, None}
+    assert [entry.what.split(":")[0] for entry in damage] == [f"stands at {stand}"]
+    assert damage.unread == 0
+
+
+def test_what_a_late_reader_finds_waiting_is_no_clock_that_stands() -> None:
+    data = bytes(SIP_BYTES)
+    given = [5.0, 5.1, *[13.0] * (STANDS_BYTES // SIP_BYTES), 13.1]
+    damage = DamageList()
+    found = [chunk.t for chunk in Timeline([Chunk(t, ROBOT_TO_CLIENT, data, 0) for t in given], damage)]
+    assert (found, list(damage)) == (given, [])
 
 
 def test_a_first_second_that_is_cut_does_not_hide_whole_seconds() -> None:

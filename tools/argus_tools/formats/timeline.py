@@ -26,6 +26,9 @@ NEAR: Final = ((DAY_S, 3600.0), (YEAR_S, DAY_S), (LEAP_YEAR_S, DAY_S))
 
 Times below BOOT_MAX_S are since a start, above EPOCH_MIN_S since 1970: one clock gives no log both.
 """
+STANDS_CHUNKS: Final = 20
+STANDS_BYTES: Final = 4096
+"""More chunks and bytes of one time than a late reader finds waiting at a serial port: a clock that stands."""
 SECONDS_SEEN: Final = 3
 """So many seconds that are over tell whether a clock has whole seconds only."""
 SECOND_MOST: Final = 400
@@ -61,7 +64,8 @@ class Timeline:
 
     Small disorder (DISORDER_S) is left as it is. A clock of the day goes on over midnight, one without a year over
     New Year. One that falls, or is set from a time since boot to one since 1970, goes on from where it was. Negative
-    times are shifted to begin at 0. Of whole seconds only, the chunks of one second are spread evenly over it.
+    times are shifted to begin at 0. Of whole seconds only, the chunks of one second are spread evenly over it. Where
+    the clock stands the chunks have no time, as those of a log that keeps none.
 
     A log that is followed is not held up for that: its first whole seconds stay, and each later one is spread by how
     many chunks the one before it had.
@@ -77,9 +81,11 @@ class Timeline:
         self._before_s: float | None = None
         self._raw = 0.0
         self._last: float | None = None
+        self._stands_at: float | None = None
+        self._told_at: float | None = None
 
     def __iter__(self) -> Iterator[Chunk]:
-        return self._paced(self._rising()) if self._is_followed else self._spread(self._rising())
+        return self._moving(self._paced(self._rising()) if self._is_followed else self._spread(self._rising()))
 
     def _rising(self) -> Iterator[Chunk]:
         for chunk in self._chunks:
@@ -140,6 +146,33 @@ class Timeline:
         what = f"gives {steps}; what lies within one is spread evenly over it"
         self._damage.correct(Damage("its clock", what))
 
+    def _stand(self, t: float | None) -> None:
+        self._stands_at = t
+        self._report_standing(t)
+
+    def _report_standing(self, t: float | None) -> None:
+        if t != self._told_at:
+            self._told_at = t
+            what = f"stands at {t}: when that came which has this time is not known"
+            self._damage.correct(Damage("its clock", what))
+
+    def _moving(self, chunks: Iterator[Chunk]) -> Iterator[Chunk]:
+        """Take the time from what comes while the clock stands: nothing is known of when it came."""
+        last: float | None = None
+        count = size = 0
+        for chunk in chunks:
+            t = chunk.t
+            if t is None:
+                yield chunk
+                continue
+            if t != last:
+                last, count, size = t, 0, 0
+            count += 1
+            size += len(chunk.data)
+            if count > STANDS_CHUNKS and size > STANDS_BYTES and t != self._stands_at:
+                self._stand(t)
+            yield chunk if t != self._stands_at else chunk._replace(t=None)
+
     def _paced(self, chunks: Iterator[Chunk]) -> Iterator[Chunk]:
         """Spread whole seconds without a look ahead."""
         last: float | None = None
@@ -167,6 +200,8 @@ class Timeline:
             if (step_s := _step_s(head)) is not None:
                 break
         if not step_s:
+            if len(head) > STANDS_CHUNKS and head[0].t == head[-1].t:
+                self._stand(head[0].t)
             yield from head
             yield from chunks
             return
@@ -182,9 +217,8 @@ class Timeline:
                 continue
             held.append(chunk)
             if len(held) > SECOND_MOST * step_s:
-                # More than a link carries: a clock that stands. Of its entries no time is known, and none is held.
-                what = f"stands at {chunk.t}: more than {SECOND_MOST * step_s} entries have this time"
-                self._damage.correct(Damage("its clock", what))
+                # More than a link carries: a clock that stands, of whose entries none is held.
+                self._report_standing(chunk.t)
                 yield from held
                 held, stands = held[:1], True
         yield from held[1:] if stands else _evenly(held, step_s)
@@ -213,10 +247,12 @@ def _step_s(head: list[Chunk]) -> int | None:
     It passes on by these, with several chunks in most of those that are over; the first may be cut.
     """
     last, first = head[-1].t, head[0].t
-    if last is None or first is None or last != int(last) or len(head) > SECOND_MOST * STEP_MOST_S:
+    if last is None or first is None or len(head) > SECOND_MOST * STEP_MOST_S:
         return 0
     if last == first:
-        return 0 if len(head) > SECOND_MOST else None
+        return 0 if len(head) > SECOND_MOST and _bytes(head) > STANDS_BYTES else None
+    if last != int(last):
+        return 0
     if last == head[-2].t:
         return None
     seconds = [(t, len(list(second))) for t, second in groupby(head, key=lambda chunk: chunk.t)]
@@ -227,6 +263,10 @@ def _step_s(head: list[Chunk]) -> int | None:
     if 1 < step_s <= STEP_MOST_S and median(over) >= STEP_LEAST * step_s:
         return step_s
     return int(2 * sum(size > 1 for size in over) > len(over))
+
+
+def _bytes(chunks: list[Chunk]) -> int:
+    return sum(len(chunk.data) for chunk in chunks)
 
 
 def _evenly(second: list[Chunk], step_s: int) -> Iterator[Chunk]:
