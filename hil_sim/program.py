@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 import shutil
+import sysconfig
 from pathlib import Path
 from typing import Final
 
@@ -14,8 +15,10 @@ NO_ARGUSD: Final = (
     "(tools/dev build release)"
 )
 _ROOT: Final = Path(__file__).resolve().parents[1]
-_NEAR: Final = (_ROOT / "build/release/argusd", _ROOT / "argus_tools/argusd")
-"""Where the sources build it, and where a wheel has it: that of the same version goes before another of PATH."""
+_WHEEL: Final = "argus_tools/argusd"
+_NEAR: Final = (_ROOT / "build/release/argusd", _ROOT / _WHEEL, Path(sysconfig.get_path("purelib"), _WHEEL))
+"""Where the sources build it, and where a wheel has it, also one that is installed while its sources are at hand: that
+of the same version goes before another of PATH."""
 
 
 def find_argusd(but: Path | None = None) -> str | None:

@@ -68,3 +68,19 @@ def test_it_becomes_argusd(place: str, tmp_path: Path) -> None:
     else:
         assert (done.returncode, len(done.stderr.splitlines())) == (127, 1), done
         assert ("tools/dev build release" in done.stderr) == (place == "nowhere")
+
+
+def test_that_of_a_wheel_is_found_beside_its_sources(tmp_path: Path) -> None:
+    site = copied(tmp_path)
+    wheel = tmp_path / "installed/argus_tools"
+    (tmp_path / "installed").mkdir()
+    argusd = program(wheel)
+    code = (
+        f"import sysconfig; sysconfig.get_path = lambda name: {str(wheel.parent)!r}\n"
+        "from hil_sim.program import find_argusd\nprint(find_argusd())"
+    )
+    env = {"PATH": "/usr/bin:/bin", "PYTHONPATH": str(site)}
+    done = subprocess.run(
+        [sys.executable, "-S", "-c", code], capture_output=True, text=True, env=env, cwd=site, check=True
+    )
+    assert done.stdout.strip() == str(argusd)

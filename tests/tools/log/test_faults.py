@@ -75,6 +75,19 @@ def test_a_healthy_log(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> No
     assert all(1e9 <= event["t"] <= 1e9 + 10 for event in events)
 
 
+@pytest.mark.parametrize(
+    "before", [b"U-Boot 2020.04\r\nDRAM: 512 MiB\r\n", b"login: pi\n$ cat /dev/ttyS0\n" * 90]
+)
+def test_what_stands_before_the_first_packet_is_reported(
+    before: bytes, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "a.bin"
+    path.write_bytes(before + b"".join(sips(100)))
+    status = faults(path, capsys)[-1]
+    assert status["health"] == ["HEALTHY"] * 16
+    assert (status["bad_checksums"], status["skipped_bytes"]) == (0, len(before))
+
+
 @pytest.mark.parametrize("format_", ["record", "jsonl", "bin"])
 def test_a_sonar_that_dies(format_: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     packets = sips(200, dead=[3], dead_at=120)

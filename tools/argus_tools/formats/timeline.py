@@ -85,7 +85,9 @@ class Timeline:
         self._told_at: float | None = None
 
     def __iter__(self) -> Iterator[Chunk]:
-        return self._moving(self._paced(self._rising()) if self._is_followed else self._spread(self._rising()))
+        return self._moving(
+            self._paced(self._rising()) if self._is_followed else self._spread(self._rising())
+        )
 
     def _rising(self) -> Iterator[Chunk]:
         for chunk in self._chunks:

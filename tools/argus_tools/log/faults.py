@@ -14,7 +14,7 @@ from typing import Any, Final, NamedTuple
 from argus_tools.chunks import CLIENT_TO_ROBOT, ROBOT_TO_CLIENT, LogError
 from argus_tools.log.common import Input, add_log_arguments, add_robot_arguments, show_table, use_colour
 from argus_tools.log.opening import identity_in, is_sip, opened
-from argus_tools.log.packets import Row
+from argus_tools.log.packets import JUNK, Row
 from argus_tools.log.summary import Summary
 from hil_sim.arcos import FLAG, SIP, TIMING, Command, SyncReply
 from hil_sim.core.library import Core, CoreEvent, kind_name, setting_value
@@ -215,10 +215,7 @@ class Listener:
                     self._leave()
             return
         self._lately.append(row.ok)
-        if row.t is not None:
-            self._clock_ms = max(self._clock_ms, round(row.t * 1000))
-        elif is_read:
-            self._clock_ms += _SIP_MS
+        self._pass_time(row, is_read)
         if not self._is_told and (reply := identity_in(row)):
             self._identity = reply
         if self.core is None and is_read and self._arrays.firing:
@@ -227,6 +224,14 @@ class Listener:
                 yield from self._open(row)
         if self.core is not None:
             yield from self._feed(self.core, row)
+        elif row.type == JUNK:
+            self._before["skipped_bytes"] += len(row.data)  # of no session, as the text of a boot before it
+
+    def _pass_time(self, row: Row, is_read: bool) -> None:
+        if row.t is not None:
+            self._clock_ms = max(self._clock_ms, round(row.t * 1000))
+        elif is_read:
+            self._clock_ms += _SIP_MS
 
     @property
     def status(self) -> dict[str, Any] | None:
