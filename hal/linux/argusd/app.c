@@ -49,6 +49,15 @@ static argusd_exit_t complain(argusd_exit_t code) {
     return code;
 }
 
+// What was printed has arrived, or the code and the reason are that it has not.
+static argusd_exit_t flushed(argusd_exit_t code) {
+    if (fflush(stdout) == 0 && ferror(stdout) == 0) {
+        return code;
+    }
+    text_refuse(message, sizeof message, "standard output: %s", strerror(errno));
+    return complain(ARGUSD_EXIT_INTERNAL);
+}
+
 static argusd_exit_t print_list(options_action_t action) {
     switch (action) {
     case OPTIONS_VERSION:
@@ -67,7 +76,7 @@ static argusd_exit_t print_list(options_action_t action) {
         options_help(stdout);
         break;
     }
-    return fflush(stdout) == 0 ? ARGUSD_EXIT_OK : ARGUSD_EXIT_INTERNAL;
+    return flushed(ARGUSD_EXIT_OK);
 }
 
 // The rate of the wire: of the link, else of the config file, else the default. They must not contradict each
@@ -350,11 +359,7 @@ static argusd_exit_t run_check(hal_link_t link, hal_clock_t clock) {
     if (tape_close(&loop.tape, message, sizeof message)) {
         complain(code);
     }
-    if (fflush(stdout) != 0 || ferror(stdout) != 0) {
-        snprintf(message, sizeof message, "standard output: %s", strerror(errno));
-        return complain(ARGUSD_EXIT_INTERNAL);
-    }
-    return code;
+    return flushed(code);
 }
 
 // Saves once at the start: a place that cannot be written is better known now than after the mission. Faults
