@@ -8,8 +8,8 @@
 #define HEIGHT 640
 #define CENTRE_X 380
 #define CENTRE_Y 320
-#define ASIDE_DEG 5    // two that look on one bearing stand so far beside it
-#define UPRIGHT_DEG 20 // a label nearer to straight ahead or astern is centred
+#define ASIDE_DEG 5   // two that look on one bearing stand so far beside it
+#define UPRIGHT_DEG 5 // a label nearer to straight ahead or astern is centred
 #define LEGEND_Y 600
 #define LEGEND_STEP 170
 #define INK "#222222"
@@ -45,7 +45,7 @@ static const char *anchor_of(int deg) {
 static void put_sonar(FILE *out, const survey_mark_t *mark, int deg) {
     const bool told = mark->state != SURVEY_HEALTHY;
     fprintf(out,
-            "<g transform=\"translate(%d %d) rotate(%d)\"><polygon points=\"-5,-50 5,-50 17,-180 -17,-180\" "
+            "<g transform=\"translate(%d %d) rotate(%d)\"><polygon points=\"-4,-50 4,-50 13,-180 -13,-180\" "
             "fill=\"%s\"/><text transform=\"translate(0 -196) rotate(%d)\" text-anchor=\"%s\" dy=\"5\">",
             CENTRE_X, CENTRE_Y, -deg, states[mark->state].colour, deg, anchor_of(deg));
     told ? fprintf(out, "%d: %s", mark->number, mark->verdict) : fprintf(out, "%d", mark->number);
