@@ -29,6 +29,8 @@ Times below BOOT_MAX_S are since a start, above EPOCH_MIN_S since 1970: one cloc
 STANDS_CHUNKS: Final = 20
 STANDS_BYTES: Final = 4096
 """More chunks and bytes of one time than a late reader finds waiting at a serial port: a clock that stands."""
+ALL_BYTES: Final = 1000
+"""So much takes longer than a second at the slowest rate: a whole log of it has not one time."""
 SECONDS_SEEN: Final = 3
 """So many seconds that are over tell whether a clock has whole seconds only."""
 SECOND_MOST: Final = 400
@@ -202,7 +204,7 @@ class Timeline:
             if (step_s := _step_s(head)) is not None:
                 break
         if not step_s:
-            if len(head) > STANDS_CHUNKS and head[0].t == head[-1].t:
+            if len(head) > STANDS_CHUNKS and head[0].t == head[-1].t and _bytes(head) > ALL_BYTES:
                 self._stand(head[0].t)
             yield from head
             yield from chunks
