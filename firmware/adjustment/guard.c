@@ -30,6 +30,7 @@
 #define BACK_STEP_MM 25
 #define ASTERN_MM 50 // beyond the rear end
 #define ASIDE_ROOM_MM 20
+#define LEAD_FIRST_MM 1000u
 
 int32_t argus_guard_straight_half_mm(const argus_robot_t *const robot) {
     return argus_robot_half_width_mm(robot) + STRAIGHT_ROOM_MM;
@@ -51,11 +52,29 @@ bool argus_guard_may_translate(const argus_guard_t *const self) {
     return self->active && self->linked && motors && self->checked && self->bumpers == 0;
 }
 
-bool argus_guard_is_heard(const argus_guard_t *const self) {
+// Of which an echo is asked: none where the profile does not ask.
+static argus_mask_t asked_of(const argus_guard_t *const self) {
     const argus_knowledge_t *const knowledge = self->knowledge;
     const unsigned used = argus_robot_all(knowledge->robot) & ~(unsigned)argus_out(knowledge);
     const unsigned ahead = used & argus_robot_forward(knowledge->robot);
-    return !self->profile->asks_echo || used == 0 || (knowledge->heard & (ahead != 0 ? ahead : used)) != 0;
+    return (argus_mask_t)(self->profile->asks_echo ? (ahead != 0 ? ahead : used) : 0u);
+}
+
+// An array fails as a whole: any of its sonars tells that it lives.
+bool argus_guard_has_led(const argus_guard_t *const self) {
+    const argus_knowledge_t *const knowledge = self->knowledge;
+    const argus_mask_t asked = asked_of(self);
+    const unsigned live = argus_robot_polled(knowledge->robot) & ~(unsigned)argus_out(knowledge);
+    const uint32_t unheard_mm = argus_unheard_mm(knowledge, (argus_mask_t)live);
+    const uint32_t led_mm = knowledge->odometer_mm - self->lead_mm;
+    const bool first = (knowledge->heard & asked) == 0 && !self->lead_changed;
+    return asked != 0 &&
+           (unheard_mm < led_mm ? unheard_mm : led_mm) >= (first ? LEAD_FIRST_MM : ARGUS_LEAD_MM);
+}
+
+bool argus_guard_is_heard(const argus_guard_t *const self) {
+    const argus_mask_t asked = asked_of(self);
+    return asked == 0 || ((self->knowledge->heard & asked) != 0 && !argus_guard_has_led(self));
 }
 
 bool argus_guard_may_creep(const argus_guard_t *const self) {

@@ -10,6 +10,8 @@
 #include "knowledge/profile.h"
 #include "knowledge/rays.h"
 
+#define ARGUS_LEAD_MM 4000u // without an echo: a sonar hears what stands in the way from farther off
+
 // Half of what is driven straight along, ahead or back, without a turn: half the body, and something for its
 // heading.
 int32_t argus_guard_straight_half_mm(const argus_robot_t *robot);
@@ -22,6 +24,7 @@ typedef struct {
     const argus_echoes_t *echoes;
     const argus_rays_t *rays;
     uint32_t now_ms;
+    uint32_t lead_mm;    // on the odometer, when the end that leads began to
     int32_t faster_mm_s; // than it is set, it has been seen to drive; 0: it keeps to that
     int32_t late_ms;     // the link, beyond what S5 counts on
     uint16_t bumpers;    // pressed, as far as they were answered
@@ -29,6 +32,7 @@ typedef struct {
     bool active;         // it may command motions: neither passive nor leaving
     bool linked;         // a session is open and SIPs come
     bool checked;        // a full health check has passed since then
+    bool lead_changed;   // ... in this session
     bool squeezes;       // it has waited for room to turn: what the body needs will do
     bool creeps;         // no sonar sees the way, and the operator lets it creep
 } argus_guard_t;
@@ -56,9 +60,14 @@ int32_t argus_guard_seen_mm(const argus_guard_t *self);
 // S2, S6: motors on, SIPs come, a full check has passed, no bumper is pressed.
 bool argus_guard_may_translate(const argus_guard_t *self);
 
-// S5: one of the sonars in use that look ahead has heard an echo in this session, or the profile does not
-// ask. Where none looks ahead, the whole ring counts. Where nothing was ever heard a free way and a dead ring
-// look alike.
+// The other end's turn to lead: on the last 4 m, on which this one led, none of its sonars in use that look
+// ahead has heard an echo; on the first metre of a session where none was ever heard. So far the other one
+// would have heard what stands ahead.
+bool argus_guard_has_led(const argus_guard_t *self);
+
+// S5: one of the sonars in use that look ahead has heard an echo in this session, and not so long ago, or the
+// profile does not ask. Where none looks ahead, the whole ring counts. Where nothing is heard a free way and
+// a dead ring look alike.
 bool argus_guard_is_heard(const argus_guard_t *self);
 
 // No sonar sees the way, and the operator lets it creep on its bumpers alone.

@@ -335,6 +335,11 @@ void argus_common_touched(argus_common_t *const self, const argus_mask_t sonars)
     }
 }
 
+void argus_common_turned_about(argus_common_t *const self, const uint32_t now_ms) {
+    self->has_turned = true;
+    self->turned_ms = now_ms;
+}
+
 bool argus_common_doubts(const argus_common_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const int array = argus_robot_array_of(sonar);

@@ -68,6 +68,9 @@ void argus_common_weigh(argus_common_t *self, argus_evidence_t *evidence, const 
 // The body has met something on its way ahead: those of `sonars`, which look there, have not heard it.
 void argus_common_touched(argus_common_t *self, argus_mask_t sonars);
 
+// The other end leads: what was heard is not ahead any more, nor was it driven towards.
+void argus_common_turned_about(argus_common_t *self, uint32_t now_ms);
+
 // What an array heard has just ended at once, or it is doubted since now; one of `sonars` is of it.
 bool argus_common_strikes(const argus_common_t *self, argus_mask_t sonars);
 

@@ -86,7 +86,7 @@ typedef struct {
     uint8_t unsound;      // leaps and slips of the odometry, one soon after the other
     uint8_t battery_low;  // SIPs in a row
     uint8_t battery_odd;  // likewise: a voltage that no battery of a robot has
-    bool touched_unheard; // something, while no sonar ahead had heard an echo: they do not live
+    bool touched_unheard; // by the end that leads, while no sonar ahead had heard an echo: they do not live
     bool motors_said;     // off
     uint32_t active_ms;   // when an operator made it active, which switches the motors on
     bool battery_said;
@@ -100,10 +100,10 @@ typedef struct {
     argus_near_t near[2]; // the last echoes within the swing circle in a turn, right and left
 } argus_reflexes_t;
 
-// The last change of the leading end.
+// The last change of the leading end, or the beginning of the session.
 typedef struct {
     uint32_t odometer_mm;
-    bool done; // there was one
+    bool done; // there was a change
 } argus_reverse_t;
 
 #define ARGUS_STAY_OPERATOR 1u // also against a client of a guard port

@@ -24,6 +24,7 @@ typedef enum {
     ARGUS_DO_SWEEP,      // SWEEPING: the way must be seen
     ARGUS_DO_WAIT,       // WAITING, because of `why`
     ARGUS_DO_DECIDE,     // a mode has ended well: what next?
+    ARGUS_DO_TURN_ABOUT, // the other end leads; then a full check
     ARGUS_DO_GIVE_UP,    // the course: failed; then a full check
     ARGUS_DO_GO_OFFLINE, // OFFLINE, or CLOSED when it is leaving
     ARGUS_DO_LEAVE,      // CLOSING

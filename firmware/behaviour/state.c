@@ -53,6 +53,8 @@ argus_guard_t argus_guard(const argus_t *const self) {
                            .echoes = &self->echoes,
                            .rays = &self->rays,
                            .now_ms = self->now_ms,
+                           .lead_mm = self->reverse.odometer_mm,
+                           .lead_changed = self->reverse.done,
                            .faster_mm_s = self->pace.seen_mm_s,
                            .late_ms = self->latency.late_ms,
                            .bumpers = self->reflexes.bumpers,

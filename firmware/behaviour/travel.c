@@ -3,6 +3,7 @@
 #include "behaviour/travel.h"
 
 #include "behaviour/looks.h"
+#include "behaviour/reverse.h"
 #include "behaviour/state.h"
 #include "knowledge/angle.h"
 
@@ -342,8 +343,23 @@ static bool stands_before(const argus_t *const self, const argus_travel_t *const
     return stands && free_mm < (heeded ? MOVE_LEAST_MM : MOVE_SLOW_MM);
 }
 
+// It has driven for long without an echo; or the rear has looked, and the front leads on.
+static bool changes_ends(const argus_t *const self, const argus_guard_t *const guard,
+                         argus_intent_t *const intent) {
+    if (argus_guard_has_led(guard) && argus_should_turn_about(self)) {
+        argus_to_check(intent, true);
+        intent->stop = ARGUS_STOP_HALT;
+    } else if (argus_should_hand_back(self) && argus_at_rest(&self->knowledge)) {
+        intent->act = ARGUS_DO_TURN_ABOUT;
+    }
+    return intent->act != ARGUS_DO_NOTHING;
+}
+
 static void drive_on(const argus_t *const self, const argus_guard_t *const guard, argus_travel_t *const mine,
                      argus_intent_t *const intent) {
+    if (changes_ends(self, guard, intent)) {
+        return;
+    }
     if (!argus_guard_sees_ahead(guard)) {
         return; // the MOVE at work ends by itself
     }

@@ -313,7 +313,10 @@ static void take_reading(argus_knowledge_t *const self, const argus_sip_sonar_t 
     sonar->readings++;
     self->fresh |= (argus_mask_t)(1u << from->number);
     self->listed |= self->fresh;
-    self->heard |= (argus_mask_t)(silent ? 0u : 1u << from->number);
+    if (!silent) {
+        self->heard |= (argus_mask_t)(1u << from->number);
+        sonar->echo_mm = self->odometer_mm;
+    }
 }
 
 static void take_readings(argus_knowledge_t *const self, const argus_sip_t *const sip) {
@@ -414,6 +417,17 @@ bool argus_counts_ahead(const argus_knowledge_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     return argus_robot_looks_ahead(self->robot, sonar) &&
            (argus_robot_faces_forward(self->robot, sonar) || self->sonar[sonar].health != ARGUS_STALE);
+}
+
+uint32_t argus_unheard_mm(const argus_knowledge_t *const self, const argus_mask_t sonars) {
+    ARGUS_ASSERT(self->sonars <= ARGUS_SONARS);
+    const unsigned heard = sonars & self->heard;
+    uint32_t least_mm = UINT32_MAX;
+    for (int i = 0; i < self->sonars; i++) {
+        const uint32_t since_mm = self->odometer_mm - self->sonar[i].echo_mm;
+        least_mm = (heard >> i & 1u) != 0 && since_mm < least_mm ? since_mm : least_mm;
+    }
+    return least_mm;
 }
 
 int32_t argus_flank_mm(const argus_knowledge_t *const self, const argus_mask_t except) {

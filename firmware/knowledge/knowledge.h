@@ -27,6 +27,7 @@ typedef struct {
     uint32_t sip;                   // index of the SIP that listed it last
     uint32_t heard_ms;              // time of that SIP
     uint32_t odometer_mm;           // way driven by then
+    uint32_t echo_mm;               // ... when it heard its last echo, if it has heard one
     uint32_t readings;              // monotonic
     uint32_t since_ms;              // entry into `health`
 } argus_sonar_t;
@@ -146,6 +147,9 @@ int32_t argus_reading_ahead_mm(const argus_knowledge_t *self, int sonar);
 // It looks ahead, on whichever deck, and what it read last holds: one that does not face forward is passed
 // over while it is STALE, since no other is asked to look there.
 bool argus_counts_ahead(const argus_knowledge_t *self, int sonar);
+
+// The way driven since one of these heard an echo; UINT32_MAX: none has in this session.
+uint32_t argus_unheard_mm(const argus_knowledge_t *self, argus_mask_t sonars);
 
 // The nearest echo, in mm, of the flank sonars, those that are out and `except` left aside; INT32_MAX: none.
 int32_t argus_flank_mm(const argus_knowledge_t *self, argus_mask_t except);

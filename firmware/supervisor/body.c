@@ -111,8 +111,10 @@ void argus_turn_about(argus_t *const self) {
     ARGUS_ASSERT(other != NULL && argus_at_rest(&self->knowledge));
     argus_knowledge_turn_about(&self->knowledge, other);
     self->reverse = (argus_reverse_t){.odometer_mm = self->knowledge.odometer_mm, .done = true};
+    self->reflexes.touched_unheard = false;
     argus_algorithm1_init(&self->algorithm1);
     argus_extremes_restart(&self->extremes);
+    argus_common_turned_about(&self->common, self->now_ms);
     argus_slip_restart(&self->slip);
     argus_base_drop(&self->base);
     self->checked = false;

@@ -127,6 +127,7 @@ static void on_open(argus_t *const self) {
         argus_enable_motors(self, &self->session.outbox);
     }
     argus_knowledge_reopen(&self->knowledge, self->now_ms);
+    self->reverse = (argus_reverse_t){.odometer_mm = self->knowledge.odometer_mm};
     restart_evidence(self);
     argus_rays_forget_all(&self->rays);
     self->reflexes.motors_said = false;

@@ -191,8 +191,7 @@ static void decide(argus_t *const self, argus_intent_t *const next) {
         return;
     }
     if (argus_should_turn_about(self)) { // also to the end that has been heard
-        argus_turn_about(self);
-        argus_to_check(next, true);
+        next->act = ARGUS_DO_TURN_ABOUT;
         return;
     }
     const argus_mask_t unheard = argus_to_try(self);
@@ -459,6 +458,10 @@ static void perform_change(argus_t *const self, const argus_intent_t *const inte
         break;
     case ARGUS_DO_DECIDE:
         decide(self, next);
+        break;
+    case ARGUS_DO_TURN_ABOUT:
+        argus_turn_about(self);
+        argus_to_check(next, true);
         break;
     default:
         perform_end(self, (argus_act_t)intent->act, next);

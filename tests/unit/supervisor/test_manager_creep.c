@@ -13,7 +13,8 @@
 
 #define SONARS (ARGUS_SONARS < 16 ? ARGUS_SONARS : 16) // that its robot has, of those that a build manages
 #define CREEP_MM_S 60
-#define CONTACT_MM 1500.0 // where the test has something that no sonar sees
+#define CONTACT_MM \
+    700.0 // where the test has something that no sonar sees; the front leads on the first metre
 
 static robot_t robot;
 static char text[120];
@@ -66,12 +67,19 @@ static bool until_blind(uint32_t ms) {
     return is_blind();
 }
 
+// The bumper of the end that leads: it touches what stands on its way.
+static void press(bool touches) {
+    const bool rear = robot.argus.knowledge.robot->reversed;
+    robot.bumpers_front = touches && !rear ? 1u << 3 : 0;
+    robot.bumpers_rear = touches && rear ? 1u << 3 : 0;
+}
+
 // The greatest speed, forth or back, over some time; the touch at CONTACT_MM is the test's.
 static double fastest(uint32_t ms, bool touches) {
     double most = 0;
     for (uint32_t at = 0; at < ms && robot.argus.mission == ARGUS_MISSION_RUNNING; at += 10) {
         robot_tick(&robot);
-        robot.bumpers_front = touches && robot.x >= CONTACT_MM ? 1u << 3 : 0;
+        press(touches && robot.x >= CONTACT_MM);
         most = fmax(most, fabs(robot.v));
     }
     return most;
@@ -205,11 +213,18 @@ void test_it_is_slow_until_one_has_heard_an_echo(void) {
     finish();
 }
 
+// One end after the other.
 void test_what_it_touches_then_shows_that_it_is_blind(void) {
     start_unheard(0);
     fastest(60000, true);
-    TEST_ASSERT_EQUAL(1, robot_count_events(&robot, ARGUS_EV_BUMPER, 0));
+    TEST_ASSERT_EQUAL(1, robot_count_events(&robot, ARGUS_EV_REVERSED, 0));
+    TEST_ASSERT_EQUAL(2, robot_count_events(&robot, ARGUS_EV_BUMPER, 0));
     TEST_ASSERT_EQUAL(ARGUS_MODE_WAITING, robot.argus.mode);
+    TEST_ASSERT_EQUAL(ARGUS_WAIT_BUMPER, robot.argus.waiting.why); // nothing is known of the way back either
+    robot.bumpers_rear = 0;
+    for (int i = 0; i < 3000 && robot.argus.waiting.why != ARGUS_WAIT_ECHO; i++) {
+        robot_tick(&robot);
+    }
     TEST_ASSERT_EQUAL(ARGUS_WAIT_ECHO, robot.argus.waiting.why);
     lose(0, SONARS - 1, ROBOT_OK); // somebody has mended them
     robot_run(&robot, 8000);
@@ -292,6 +307,21 @@ void test_the_rear_leads_when_the_front_was_never_heard(void) {
     fastest(90000, false);
     TEST_ASSERT_EQUAL(ARGUS_MISSION_REACHED, robot.argus.mission);
     TEST_ASSERT_EQUAL(0, robot_count_events(&robot, ARGUS_EV_NO_ECHO, 0));
+    finish();
+}
+
+// Of two ends that hear nothing each looks where the other drives: after 1 m, then after 4 m each time.
+void test_where_nothing_is_heard_the_rear_looks(void) {
+    start_unheard(0);
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_REVERSED, 30000));
+    TEST_ASSERT_EQUAL(1, robot_last_event(&robot, ARGUS_EV_REVERSED)->value);
+    TEST_ASSERT_TRUE(robot.x > 990 && robot.x < 1100);
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_REVERSED, 30000));
+    TEST_ASSERT_EQUAL(0, robot_last_event(&robot, ARGUS_EV_REVERSED)->value);
+    TEST_ASSERT_TRUE(robot.x < 1100);
+    fastest(90000, false);
+    TEST_ASSERT_EQUAL(ARGUS_MISSION_REACHED, robot.argus.mission);
+    TEST_ASSERT_EQUAL(2, robot_count_events(&robot, ARGUS_EV_REVERSED, 0));
     finish();
 }
 
