@@ -4,8 +4,8 @@
 
 A bench leaves its figures as JSON. The file that is published lies in docs/figures, and every table of the
 documents is made of it. To publish a new run, copy its JSON there and run this tool. What a program prints without
-leaving a file is entered in docs/figures/measured.json by hand, with the command and the day. Two pictures are drawn of
-the files, too; each holds a digest of what it shows.
+leaving a file is entered in docs/figures/measured.json by hand, with the command and the day. Three pictures are drawn
+of the files, too; each holds a digest of what it shows.
 """
 
 from __future__ import annotations
@@ -77,6 +77,13 @@ def measured(name: str, found: Summary) -> str:
     if any(len(row) != len(entry["columns"]) for row in entry["rows"]):
         raise KeyError(f"{name}: a row has not as many cells as there are columns")
     return f"Measured on {entry['date']}{command}{host}:\n\n{_grid(entry['columns'], entry['rows'])}"
+
+
+def performance(found: Summary) -> str:
+    """Return the table of `bench performance`, after a line that says how and when it came about."""
+    origin = f"Measured on {found['date']} by `{found['command']}` ({found['host']}):"
+    rows = [(row["what"], row["text"], row["of"]) for row in found["rows"]]
+    return f"{origin}\n\n{_grid(('what', 'median (least to greatest)', 'unit'), rows)}"
 
 
 def _counts(ends: dict[str, int]) -> tuple[str, str]:
@@ -170,12 +177,14 @@ PARTS: Final[dict[str, dict[str, tuple[str, Callable[[Summary], str]]]]] = {
     "docs/paper-profile.md": {"pairs": ("pairs.json", pairs_told)},
     "docs/guardian.md": {"measured": ("measured.json", functools.partial(measured, "guardian"))},
     "docs/monitor.md": {"measured": ("measured.json", functools.partial(measured, "monitor"))},
+    "docs/performance.md": {"performance": ("performance.json", performance)},
     "docs/peers.md": {"measured": ("measured.json", functools.partial(measured, "peers"))},
 }
 """Document, part of it, the file that its figures come from and what makes a table of them."""
 
 PICTURES: Final[dict[str, tuple[tuple[str, ...], Callable[..., None]]]] = {
     "docs/img/journey.png": (("journey.json",), overview.draw_journeys),
+    "docs/img/performance.png": (("performance.json",), overview.draw_speeds),
     "docs/img/diagnosis.png": (("drive-by.json", "diagnosis.json"), overview.draw_found),
 }
 """Picture, the files whose figures it shows and what draws it."""

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Pictures of published figures: journeys by row, and faults found in time by kind, with their 95 % intervals."""
+"""Pictures of published figures: journeys by row, faults found in time by kind, how fast simulators are."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from statistics import median
 from typing import Any, Final
 
 from matplotlib import rc_context
@@ -99,4 +100,21 @@ def draw_found(path: Path, source: str, listening: Record, driving: Record) -> N
         right.set_title("by a robot that drives itself (bench diagnosis)", fontsize=10)
         for place in (left, right):
             place.set(xlabel="found in time, % of the faults (their number)", xlim=(-3, 103))
+        _save(figure, path, source)
+
+
+def draw_speeds(path: Path, source: str, found: Record) -> None:
+    """Draw how much faster than real time simulators are: the median of the rounds, least and greatest."""
+    rows = [row for row in found["rows"] if row["of"] == "robot seconds a second"]
+    with rc_context(_STYLE):
+        figure = Figure(figsize=(9.0, 1.0 + 0.4 * len(rows)), layout="constrained")
+        place = figure.subplots()
+        for at, row in enumerate(rows):
+            low, middle, high = min(row["values"]), median(row["values"]), max(row["values"])
+            style: Mapping[str, Any] = _IDEAL if "ir-sim" in row["what"] else _ARGUS
+            spread = [[middle - low], [high - middle]]
+            place.errorbar([middle], [at], xerr=spread, linestyle="none", capsize=3, **style)
+        _named(place, [row["what"] for row in rows])
+        place.set(xlabel="robot seconds a second of one core")
+        place.set_xlim(left=0)
         _save(figure, path, source)
