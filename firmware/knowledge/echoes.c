@@ -9,7 +9,6 @@
 #define REMEMBER_BELOW_MM 2000 // beyond it a beam is too wide to say where the echo lies
 #define SAME_PLACE_MM 80
 #define SAME_THING_MM 150
-#define FORGET_MS 60000u
 #define ABOUT_MM 1000      // a turn is asked for no farther
 #define LATELY_MS 5000u    // what was seen so near does not go away while a look is prepared
 #define NEARER_MM 10       // of two echoes of one place
@@ -63,7 +62,7 @@ static bool is_seen_again(const argus_echo_t *const seen, const argus_point_t *c
     const uint32_t age_ms = now_ms - seen->seen_ms;
     const argus_point_t there = {seen->x_mm, seen->y_mm};
     return (near && argus_are_one_thing(there, *at) && age_ms <= LATELY_MS) ||
-           (seen->again && age_ms <= FORGET_MS && same_place(seen, at));
+           (seen->again && age_ms <= ARGUS_FORGET_MS && same_place(seen, at));
 }
 
 // ... of something at most so far from there.
@@ -234,7 +233,7 @@ int32_t argus_echoes_clear_mm(const argus_echoes_t *const self, const argus_know
         const int32_t ahead = (dx * c + dy * s) / ARGUS_TRIG_ONE;
         const int32_t beside = (dy * c - dx * s) / ARGUS_TRIG_ONE;
         // One echo alone may have been crosstalk.
-        const uint32_t counts_ms = self->at[i].again ? FORGET_MS : LATELY_MS;
+        const uint32_t counts_ms = self->at[i].again ? ARGUS_FORGET_MS : LATELY_MS;
         const bool recent = knowledge->sip_ms - self->at[i].seen_ms <= counts_ms;
         if (recent && ahead > BEHIND_MM && argus_abs(beside) < half_mm) {
             clear = argus_min(clear, ahead);
@@ -261,7 +260,7 @@ bool argus_echoes_beside(const argus_echoes_t *const self, const argus_knowledge
     if (argus_echoes_near(self, knowledge, index, at)) {
         return true;
     }
-    if (!seen->stands || knowledge->sip_ms - seen->seen_ms > FORGET_MS || !is_about(seen, knowledge)) {
+    if (!seen->stands || knowledge->sip_ms - seen->seen_ms > ARGUS_FORGET_MS || !is_about(seen, knowledge)) {
         return false;
     }
     *at = place_of(seen, knowledge);

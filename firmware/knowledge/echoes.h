@@ -9,6 +9,7 @@
 #include "knowledge/touches.h"
 
 #define ARGUS_POINTS_MAX 128
+#define ARGUS_FORGET_MS 60000u // what was heard twice is remembered so long
 
 // Echoes seen lately, course frame: what the way round an obstacle is planned from.
 typedef struct {

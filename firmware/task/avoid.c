@@ -14,8 +14,8 @@
 #define PROGRESS_MM 100
 #define SET_BACK_MM 500
 #define SET_BACKS_MAX 32
-#define CLOSED_MAX 2 // a map found closed is doubted so often, and then believed
-#define VAIN_MS 60000u
+#define CLOSED_MAX 2                       // a map found closed is doubted so often, and then believed
+#define VAIN_MS (ARGUS_FORGET_MS + 30000u) // what bars a turn from memory alone is forgotten first
 #define GAP_MS 500u
 
 void argus_task_refuse(argus_task_t *const self, const argus_knowledge_t *const knowledge,

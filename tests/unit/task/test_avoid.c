@@ -151,17 +151,17 @@ static int seconds_until_hopeless(const int most) {
     return -1;
 }
 
-void test_a_minute_of_driving_without_progress_is_hopeless(void) {
+void test_a_minute_and_a_half_of_driving_without_progress_is_hopeless(void) {
     TEST_ASSERT_TRUE(chooses());
     (void)argus_task_is_hopeless(&t, &k, true);
-    TEST_ASSERT_EQUAL(60, seconds_until_hopeless(100));
+    TEST_ASSERT_EQUAL(90, seconds_until_hopeless(200));
 }
 
-void test_so_is_a_minute_without_a_way(void) {
+void test_so_is_as_long_without_a_way(void) {
     shut_in();
     TEST_ASSERT_FALSE(chooses());
     (void)argus_task_is_hopeless(&t, &k, true);
-    TEST_ASSERT_EQUAL(60, seconds_until_hopeless(100));
+    TEST_ASSERT_EQUAL(90, seconds_until_hopeless(200));
 }
 
 // A map may close by echoes of nothing. It is faded, and the way that opens counts from then on, however much
@@ -192,7 +192,7 @@ void test_after_a_closed_map_the_way_is_measured_anew(void) {
     TEST_ASSERT_TRUE(chooses());
     stand(100, 0); // far from its best, but nearer than now
     TEST_ASSERT_FALSE(a_second(true));
-    TEST_ASSERT_EQUAL(60, seconds_until_hopeless(100));
+    TEST_ASSERT_EQUAL(90, seconds_until_hopeless(200));
 }
 
 void test_what_does_not_count_as_driving(void) {
@@ -205,7 +205,7 @@ void test_what_does_not_count_as_driving(void) {
         TEST_ASSERT_FALSE(argus_task_is_hopeless(&t, &k, true));
     }
     t.next = t.count;
-    TEST_ASSERT_EQUAL(-1, seconds_until_hopeless(100));
+    TEST_ASSERT_EQUAL(-1, seconds_until_hopeless(200));
 }
 
 void test_progress_is_a_way_to_go_that_is_100_mm_shorter(void) {
@@ -214,7 +214,7 @@ void test_progress_is_a_way_to_go_that_is_100_mm_shorter(void) {
         TEST_ASSERT_TRUE(chooses());
         int hopeless = 0;
         for (int i = 1; i <= 3; i++) {
-            for (int s = 0; s < 45; s++) {
+            for (int s = 0; s < 60; s++) {
                 hopeless += a_second(true);
             }
             stand(i == 1 ? step : 2 * step, 0);
