@@ -94,6 +94,7 @@ class ArgusNode(ArgusLifecycleNode):
     # ---- lifecycle
 
     def _configure(self) -> None:
+        self._framed: RobotTable | None = None
         self._forget()
         self._told: list[Verdict] = []
         self._diagnosed_s = -math.inf
@@ -283,6 +284,8 @@ class ArgusNode(ArgusLifecycleNode):
         if self._ring is None or self._ring.table != table:
             self._meet(table)
         assert self._ring is not None
+        if self._framed != table and (self.value("robot") or state.get("online")):
+            self._frame(table)
         self._ring.take_state(state)
         if self._ring.verdicts != self._told:
             self._diagnose()
@@ -293,6 +296,10 @@ class ArgusNode(ArgusLifecycleNode):
         self._ring = _Ring(table)
         self._make_ranges(table.sonars)
         self._serve_sonars(table.sonars)
+
+    def _frame(self, table: RobotTable) -> None:
+        """Publish where the sonars are, once it is known which robot it is."""
+        self._framed = table
         if self._tf_static is None:
             return
         at, base, prefix = self._now(), self.frame("base_link_frame_id"), self.frame("sonar_frame_prefix")
@@ -307,7 +314,7 @@ class ArgusNode(ArgusLifecycleNode):
                 height_m,
                 math.radians(m.heading_deg),
             )
-            for k, m in enumerate(self._ring.table.mounts)
+            for k, m in enumerate(table.mounts)
         ]
         self._tf_static.publish(TFMessage(transforms=frames))
 
