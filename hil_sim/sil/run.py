@@ -78,8 +78,8 @@ class Sil:
     ) -> None:
         """`trace`: called for each SIP, which costs some 20 us. `sightings`: takes each SIP, with less to be had."""
         self.mission = mission
-        self.trace = trace
         self._sightings = sightings if sightings is not None or trace is None else Sightings(keep=False)
+        self._trace = trace
         self.traffic: list[Packet] | None = None
         self.now_ms = 0.0
         self._stamp = stamp_of(mission.world)
@@ -128,6 +128,18 @@ class Sil:
             self._sightings.begin(robot.kinds)
         return robot
 
+    @property
+    def trace(self) -> Trace | None:
+        """What is called for each SIP; it may be set at any time."""
+        return self._trace
+
+    @trace.setter
+    def trace(self, trace: Trace | None) -> None:
+        self._trace = trace
+        if trace is not None and self._sightings is None:
+            self._sightings = Sightings(keep=False)
+            self._sightings.begin(self.robot.kinds)
+
     def _build_core(self) -> Core:
         mission = self.mission
         given: dict[str, int] = {"baud": mission.baud}
@@ -163,7 +175,6 @@ class Sil:
         state = loop.state
         state.verifying, (state.over_first, state.over_second) = self._verifying, self._done
         state.stops_at_goal = self.mission.stop_at_goal
-        state.seen = self._sightings.address if self._sightings is not None else None
         return loop
 
     def _run_loop(self, loop: Loop, end_ms: float) -> bool:
@@ -185,7 +196,9 @@ class Sil:
         state.brief_ms, state.verifying_ms = self._brief_ms, self._verifying_ms
         state.driving_ms, state.sips = self._driving_ms, server.sips
         state.traces = self.trace is not None
+        state.seen = None
         if self._sightings is not None:
+            state.seen = self._sightings.address
             self._sightings.make_room()
         state.brief[: len(self._brief)] = [*self._brief]
         state.to_core.put(self._to_core)

@@ -71,6 +71,18 @@ def test_columns_are_what_a_trace_sees(name: str, pieces: bool) -> None:
     assert readings == watch.readings
 
 
+@pytest.mark.parametrize("begun_s", [0.0, 5.0])
+def test_a_trace_may_be_set_later(begun_s: float) -> None:
+    """On one that has begun those come that are sent from then on."""
+    sil, watch = Sil(MISSIONS["plain"]), Watch()
+    sil.run_until(begun_s)
+    sil.trace = watch
+    sil.run_until(begun_s + 10.0)
+    assert len(watch.rows) >= 90
+    assert watch.rows[0][0] >= begun_s
+    assert len({reading.number for reading in watch.readings}) == 16
+
+
 @pytest.mark.parametrize("name", MISSIONS)
 def test_c_and_python_write_the_same(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     in_c = Sightings()
