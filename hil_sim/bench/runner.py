@@ -12,11 +12,12 @@ import tempfile
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import NoReturn
+from types import FrameType
 
 from hil_sim.bench.progress import Progress
 from hil_sim.bench.store import Record, Store
 from hil_sim.core.library import LIBRARY_VARIABLE, library
+from hil_sim.sil.loop import Loop
 
 
 @contextmanager
@@ -37,9 +38,30 @@ def fixed_core() -> Iterator[str]:
                 os.environ[LIBRARY_VARIABLE] = before
 
 
-def _terminated(number: int, frame: object) -> NoReturn:
-    del number, frame
-    raise KeyboardInterrupt
+class _Interrupt:
+    """Ends a bench, at once or, where C is at work on a mission, behind it: what C calls must not raise, and what is
+    raised before the first line of such a call is lost."""
+
+    def __init__(self) -> None:
+        self.came = False
+
+    def __call__(self, number: int, frame: FrameType | None) -> None:
+        del number
+        self.came = True
+        while frame is not None and frame.f_code is not Loop.run.__code__:
+            frame = frame.f_back
+        if frame is None:
+            raise KeyboardInterrupt
+
+    @contextmanager
+    def watched(self) -> Iterator[None]:
+        """Take Ctrl-C and SIGTERM."""
+        before = [(number, signal.signal(number, self)) for number in (signal.SIGINT, signal.SIGTERM)]
+        try:
+            yield
+        finally:
+            for number, handler in before:
+                signal.signal(number, handler)
 
 
 def keep(records: Iterable[Record], store: Store, total: int, todo: int) -> bool:
@@ -50,14 +72,16 @@ def keep(records: Iterable[Record], store: Store, total: int, todo: int) -> bool
     if not todo:
         return True
     progress = Progress(total, total - todo, sys.stderr)
-    before = signal.signal(signal.SIGTERM, _terminated)
+    interrupt = _Interrupt()
     try:
-        for record in records:
-            store.add(record)
-            progress.add(record)
+        with interrupt.watched():
+            for record in records:
+                store.add(record)
+                progress.add(record)
+                if interrupt.came:
+                    return False
     except KeyboardInterrupt:
         return False
     finally:
-        signal.signal(signal.SIGTERM, before)
         progress.close()
     return True
