@@ -21,7 +21,7 @@ from hil_sim.arcos import Sip
 ROOT = Path(__file__).resolve().parents[3]
 CAPTURES = sorted((ROOT / "tests" / "data" / "captures").glob("*.jsonl"))
 SAMPLE = ROOT / "docs" / "samples" / "two-failing-sonars.rec.gz"
-SEEDS = range(3)
+SEEDS = range(4)
 
 
 def strange_rows(rng: random.Random, count: int) -> list[Row]:
@@ -111,7 +111,7 @@ def test_a_mutilated_log_brings_the_same_reports(seed: int) -> None:
     rows = list(packets(open_log(str(SAMPLE))))
     for _ in range(60):
         at = rng.randrange(len(rows))
-        mutation = rng.randrange(5)
+        mutation = rng.randrange(6)
         row = rows[at]
         if mutation == 0 and row.ok:
             rows[at] = row._replace(ok=False, error="checksum is 0000, not 0001")
@@ -123,6 +123,12 @@ def test_a_mutilated_log_brings_the_same_reports(seed: int) -> None:
             rows.insert(
                 at, Row(row.t, 0, "c2r", "SONAR", True, bytes((28, 0x3B, rng.choice((0, 1, 3, 4)), 0)))
             )
+        elif mutation == 4:
+            # A client speaks between SIPs: rarely of the session, and then sometimes damaged.
+            kind, number = rng.choice((("VEL", 11), ("PULSE", 0), ("CLOSE", 2)))
+            said = Row(row.t, 0, "c2r", kind, rng.random() < 0.8, bytes((number, 0x3B, 1, 0)))
+            for place in range(at, min(at + rng.randrange(1, 60), len(rows)), rng.randrange(1, 4)):
+                rows.insert(place, said)
         else:
             del rows[at : at + rng.randrange(40)]
     expected = reports(rows, 0)

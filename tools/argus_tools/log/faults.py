@@ -42,6 +42,8 @@ _COUNT_AT: Final = SIP["OFFSET_SONAR_COUNT"] - SIP["OFFSET_TYPE"]
 # So many rows are taken together; fewer SIPs than this are sooner taken one by one.
 _BATCH_ROWS: Final = 512
 _FEW_ROWS: Final = 4
+# What a client says that bears on which arrays fire, or on the session.
+_OF_SESSION: Final = frozenset(("SONAR", "CLOSE"))
 _ALL_ARRAYS: Final = (1 << TIMING["ARRAYS_MAX"]) - 1
 _ARRAY: Final = TIMING["TRANSDUCERS_PER_ARRAY"]
 _ABSENT, _UNKNOWN = "ABSENT", "UNKNOWN"
@@ -135,37 +137,46 @@ class Listener:
         """Take many rows; yield what is reported with the number of its row, as `take` does it row by row."""
         at = 0
         while at < len(rows):
-            end = at + self._alike(rows, at)
-            if end - at < _FEW_ROWS:
-                yield from ((at, said) for said in self.take(rows[at]))
-                at += 1
+            alike, end = self._alike(rows, at)
+            if len(alike) < _FEW_ROWS:
+                for number in range(at, max(end, at + 1)):
+                    yield from ((number, said) for said in self.take(rows[number]))
+                at = max(end, at + 1)
                 continue
             taken = 0
-            for number, said in self._feed_many(rows[at:end]):
+            for number, said in self._feed_many([rows[n] for n in alike]):
                 taken = number + 1
                 if said is not None:
-                    yield at + number, said
-            at += taken
+                    yield alike[number], said
+            at = end if taken == len(alike) else alike[taken]
 
-    def _alike(self, rows: list[Row], at: int) -> int:
-        """Return how many SIPs from there on change nothing but the manager in its session."""
+    def _alike(self, rows: list[Row], at: int) -> tuple[list[int], int]:
+        """Return the SIPs from there on that change nothing but the manager in its session, and where they end.
+
+        What a client sends meanwhile, and that says nothing of the arrays or the session, is passed over.
+        """
+        alike: list[int] = []
         if self.core is None:
-            return 0
+            return alike, at
         flags, shapes = self._flags, self._shapes
-        has_times = rows[at].t is not None
-        count = 0
-        for t, _, direction, kind, is_ok, data, _ in itertools.islice(rows, at, None):
+        has_times: bool | None = None
+        for number in range(at, len(rows)):
+            t, _, direction, kind, is_ok, data, _ = rows[number]
+            if direction != ROBOT_TO_CLIENT:
+                if kind in _OF_SESSION:
+                    return alike, number
+                continue
             if (
                 kind != "SIP"
                 or not is_ok
-                or direction != ROBOT_TO_CLIENT
                 or data[_FLAGS_AT : _FLAGS_AT + 2] != flags
-                or (t is not None) != has_times
+                or has_times not in (None, t is not None)
                 or (len(data), data[_COUNT_AT]) not in shapes
             ):
-                break
-            count += 1
-        return count
+                return alike, number
+            has_times = t is not None
+            alike.append(number)
+        return alike, len(rows)
 
     def _feed_many(self, rows: list[Row]) -> Iterator[tuple[int, Said | None]]:
         """Take SIPs that are alike; yield the number of each that reports something, and of the last one taken."""
