@@ -23,7 +23,8 @@ void argus_policy_walk(argus_plan_t *const plan, const argus_turns_t *const turn
     ARGUS_ASSERT(turns->count <= ARGUS_TURNS_MAX);
     unsigned open = argus_turns_open(turns);
     int next = next_outward(turns, 0);
-    for (int tries = 0; tries < turns->count && next >= 0 && open != 0; tries++) {
+    for (int tries = 0; tries < turns->count && open != 0; tries++) {
+        ARGUS_ASSERT(next >= 0); // each turn comes once: as many are left as tries
         const unsigned seen = turns->sees[next] & open;
         if (seen != 0) {
             ARGUS_ASSERT(plan->count < ARGUS_ROTATIONS_MAX); // each rotation sees another blind bearing

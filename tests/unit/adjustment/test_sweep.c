@@ -138,3 +138,12 @@ void test_a_sweep_is_outdated_by_who_looks(void) {
     const argus_plan_t other = argus_plan(argus_robot_default(), ARGUS_POLICY_RING, 0x7C, 0xFF83);
     TEST_ASSERT_TRUE(argus_sweep_is_outdated(&drive, &other));
 }
+
+// A plan that has become shorter under a sweep has no rotation left for it: it asks for none, and looks home.
+void test_a_plan_that_became_shorter_asks_for_nothing(void) {
+    begin(ARGUS_POLICY_PAPER, 0x0C);
+    drive.index = plan.count;
+    TEST_ASSERT_FALSE(drive.home);
+    TEST_ASSERT_EQUAL_HEX16(0, argus_sweep_wants(&drive, &plan, argus_robot_default()));
+    TEST_ASSERT_EQUAL(BASE, argus_sweep_heading_cdeg(&drive, &plan));
+}

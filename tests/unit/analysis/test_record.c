@@ -270,3 +270,29 @@ void test_version_1_is_read_as_history(void) {
     old[20]++;
     refused_untouched(old, sizeof old);
 }
+
+// 0 is no robot's: one whose texts give it has another.
+void test_no_robot_has_the_number_of_none(void) {
+    TEST_ASSERT_EQUAL_UINT32(1, argus_record_robot("BZLV6R0", "Pioneer", "p3dx-sh"));
+}
+
+// Each reason by itself keeps the relapse: it had none, it was out in this mission, it is not healthy now.
+void test_only_a_healthy_mission_makes_up_for_a_relapse(void) {
+    static const struct {
+        uint8_t relapses;
+        uint16_t disabled_times;
+        argus_health_t health;
+        uint8_t left;
+    } rows[] = {{0, 0, ARGUS_HEALTHY, 0}, {2, 0, ARGUS_HEALTHY, 1}, {2, 1, ARGUS_HEALTHY, 2},
+                {2, 0, ARGUS_UNKNOWN, 2}, {2, 0, ARGUS_SUSPECT, 2}, {2, 0, ARGUS_PROBATION, 2}};
+    for (unsigned i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        argus_knowledge_init(&k);
+        argus_evidence_init(&e);
+        put_health(&k.sonar[1], rows[i].health, ARGUS_KIND_WRONG, 0);
+        k.sonar[1].relapses = rows[i].relapses;
+        k.sonar[1].disabled_times = rows[i].disabled_times;
+        const size_t length = argus_record_encode(&k, &e, 7, record, sizeof record);
+        TEST_ASSERT_EQUAL(ARGUS_RECORD_OK, read_back(record, length));
+        TEST_ASSERT_EQUAL(rows[i].left, other.sonar[1].relapses);
+    }
+}

@@ -258,3 +258,14 @@ void test_what_has_no_room_is_refused_whole(void) {
     TEST_ASSERT_TRUE(outbox.length <= ARGUS_OUTBOX_BYTES);
     TEST_ASSERT_NOT_EQUAL(ARCOS_CMD_E_STOP + more, argus_outbox_first(&outbox)); // the last one
 }
+
+// Each room that is too small by itself.
+void test_a_text_takes_its_length_and_eight_bytes(void) {
+    for (size_t count = 0; count <= 24; count++) {
+        const uint8_t text[24] = {0};
+        for (size_t capacity = 0; capacity <= 40; capacity++) {
+            const size_t wanted = capacity >= count + 8 ? count + 8 : 0;
+            TEST_ASSERT_EQUAL(wanted, argus_command_string(packet, capacity, ARCOS_CMD_POLLING, text, count));
+        }
+    }
+}

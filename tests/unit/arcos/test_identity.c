@@ -43,3 +43,11 @@ void test_a_serial_number_left_out_is_no_other(void) {
     TEST_ASSERT_EQUAL_INT(3, meet("A", "Pioneer", "p3at-sh", NULL));
     TEST_ASSERT_EQUAL_INT(0, meet("A", "Pioneer", "p3at-sh", "1")); // the other robot's own was not told yet
 }
+
+// 0 stands for a text that is not given: one whose hash would be 0 is given all the same.
+void test_a_text_whose_hash_is_zero_is_given(void) {
+    meet("A", "Pioneer", "p3dx-sh", "A7FHKFV");
+    TEST_ASSERT_EQUAL_INT(0, meet("A", "Pioneer", "p3dx-sh", "A7FHKFV"));
+    TEST_ASSERT_EQUAL_INT(4, meet("A", "Pioneer", "p3dx-sh", "B"));
+    TEST_ASSERT_EQUAL_INT(4, meet("A", "Pioneer", "p3dx-sh", "A7FHKFV"));
+}

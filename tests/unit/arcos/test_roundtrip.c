@@ -113,3 +113,26 @@ void test_what_does_not_show_is_not_sent_on_and_on(void) {
     TEST_ASSERT_EQUAL(7, sip(2600, 0));
     TEST_ASSERT_EQUAL(-1, sip(2700, 0));
 }
+
+static void fill_outbox(void) {
+    while (argus_outbox_plain(&session.outbox, ARCOS_CMD_PULSE)) {
+    }
+}
+
+// What finds no room was not sent: it is no order under way, and no question.
+void test_what_has_no_room_is_not_under_way(void) {
+    for (int has_port = 0; has_port < 2; has_port++) {
+        setUp();
+        fill_outbox();
+        session.sip.anport = (uint8_t)(has_port ? 0 : 200);
+        for (uint32_t now_ms = 1000; now_ms < 2000; now_ms += 100) {
+            argus_roundtrip_sip(&trip, &session, &config, now_ms);
+            TEST_ASSERT_EQUAL(0, trip.waiting);
+            TEST_ASSERT_FALSE(trip.asks);
+        }
+        argus_outbox_clear(&session.outbox);
+        argus_roundtrip_sip(&trip, &session, &config, 2000);
+        TEST_ASSERT_EQUAL(1, trip.waiting);
+        TEST_ASSERT_TRUE(trip.asks);
+    }
+}

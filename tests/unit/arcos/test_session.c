@@ -1127,3 +1127,66 @@ void test_zeros_that_do_not_fit_are_still_due(void) {
     TEST_ASSERT_EQUAL(9, argus_session_transmit(&session, now(), packet, sizeof packet));
     TEST_ASSERT_EQUAL(1, session.zeros_due);
 }
+
+void test_attempts_are_counted_to_their_most(void) {
+    argus_session_init(&session);
+    argus_session_link_up(&session, now());
+    TEST_ASSERT_EQUAL(1, session.attempts);
+    session.attempts = UINT16_MAX;
+    session.state = ARGUS_SESSION_PAUSE;
+    time_ms += 60000;
+    argus_session_process(&session, &config, now());
+    TEST_ASSERT_EQUAL(ARGUS_SESSION_LISTEN, session.state);
+    TEST_ASSERT_EQUAL(UINT16_MAX, session.attempts);
+}
+
+// Each of the two ends a pause, whichever is the shorter.
+void test_a_pause_ends_with_the_shorter_of_its_own_and_the_longest(void) {
+    static const struct {
+        uint32_t pause_ms;
+        int32_t longest_ms;
+        uint32_t ends_ms;
+    } rows[] = {{500, 8000, 500}, {8000, 500, 500}};
+    for (unsigned i = 0; i < 2; i++) {
+        argus_session_init(&session);
+        session.state = ARGUS_SESSION_PAUSE;
+        session.since_ms = now();
+        session.pause_ms = rows[i].pause_ms;
+        config.retry_max_ms = rows[i].longest_ms;
+        argus_session_process(&session, &config, now() + rows[i].ends_ms - 1);
+        TEST_ASSERT_EQUAL(ARGUS_SESSION_PAUSE, session.state);
+        argus_session_process(&session, &config, now() + rows[i].ends_ms);
+        TEST_ASSERT_EQUAL(ARGUS_SESSION_LISTEN, session.state);
+    }
+}
+
+// It leaves once nothing waits, and neither its last word nor the leave itself is younger than that.
+void test_leaving_takes_its_time_since_the_word_and_since_the_leave(void) {
+    for (uint32_t spoke_ms = 0; spoke_ms <= 400; spoke_ms += 50) {
+        for (uint32_t left_ms = 0; left_ms <= 400; left_ms += 50) {
+            argus_session_init(&session);
+            session.state = ARGUS_SESSION_LEAVING;
+            session.spoke_ms = now() - spoke_ms;
+            session.since_ms = now() - left_ms;
+            argus_session_process(&session, &config, now());
+            TEST_ASSERT_EQUAL(spoke_ms >= 250 && left_ms >= 250, session.state == ARGUS_SESSION_CLOSED);
+        }
+    }
+}
+
+// A packet that broke off hides a whole SIP: silence shows it, without another byte.
+void test_a_sip_inside_a_packet_that_broke_off_comes_with_time(void) {
+    uint8_t data[32];
+    uint8_t bytes[80] = {0xFA, 0xFB, 200, 0x20};
+    connect();
+    robot.sip_type = 0x32;
+    sip_data(data, 1);
+    const size_t count = 4 + argus_frame_encode(bytes + 4, sizeof bytes - 4, data, sizeof data);
+    size_t taken = 0;
+    const uint32_t sips = session.sips;
+    TEST_ASSERT_EQUAL(0, argus_session_receive(&session, &config, now(), bytes, count, &taken));
+    TEST_ASSERT_EQUAL(count, taken);
+    TEST_ASSERT_EQUAL(0, argus_session_process(&session, &config, now() + 10) & ARGUS_SESSION_GOT_SIP);
+    TEST_ASSERT_TRUE((argus_session_process(&session, &config, now() + 60) & ARGUS_SESSION_GOT_SIP) != 0);
+    TEST_ASSERT_EQUAL(sips + 1, session.sips);
+}

@@ -122,3 +122,85 @@ void test_an_order_is_doubted_once_it_is_done_and_dropped_again(void) {
     argus_setup_drop(&setup, ARGUS_SETUP_ENABLE);
     TEST_ASSERT_FALSE(argus_setup_is_open(&setup, ARGUS_SETUP_ENABLE));
 }
+
+// An order of any length and content that a client may send is read within what there is of sonars.
+void test_a_polling_order_of_anything_is_taken_within_its_bounds(void) {
+    static const uint8_t order[] = {0, 1, 32, 33, 200, 1};
+    uint8_t packet[ARGUS_PACKET_MAX];
+    const size_t size = argus_command_string(packet, sizeof packet, ARCOS_CMD_POLLING, order, sizeof order);
+    argus_setup_sent(&setup, now_ms, packet, size);
+    TEST_ASSERT_EQUAL(6, setup.polling_count);
+    for (int i = 0; i < ARGUS_SETUP_SONARS; i++) {
+        TEST_ASSERT_EQUAL(i == 0 ? 2 : i == 31 ? 1 : 0, setup.share[i]);
+    }
+    uint8_t longest[ARGUS_SETUP_POLLING_MAX + 1];
+    memset(longest, 3, sizeof longest);
+    const size_t more =
+        argus_command_string(packet, sizeof packet, ARCOS_CMD_POLLING, longest, sizeof longest);
+    TEST_ASSERT_GREATER_THAN(0, more);
+    argus_setup_sent(&setup, now_ms, packet, more);
+    TEST_ASSERT_EQUAL(6, setup.polling_count); // longer than any: it is not the order at work
+}
+
+// As long as an order with a number: its bytes are no number all the same.
+void test_an_order_of_one_sonar_is_no_number(void) {
+    static const uint8_t order[] = {5};
+    uint8_t packet[ARGUS_PACKET_MAX];
+    argus_setup_sent(&setup, now_ms, packet,
+                     argus_command_string(packet, sizeof packet, ARCOS_CMD_POLLING, order, 1));
+    TEST_ASSERT_EQUAL(0, setup.order[ARGUS_SETUP_POLLING].value);
+    TEST_ASSERT_EQUAL(1, setup.share[4]);
+}
+
+// Each sign of sonars that are on, by itself; off takes none.
+void test_sonars_are_on_by_a_flag_or_by_a_reading(void) {
+    static const struct {
+        int32_t value;
+        uint16_t flags;
+        uint8_t listed;
+        bool open;
+    } rows[] = {{0, 0, 0, false},
+                {1, 0, 0, true},
+                {1, ARCOS_FLAG_SONAR1, 0, false},
+                {1, ARCOS_FLAG_SONAR4, 0, false},
+                {1, 0, 1, false}};
+    for (unsigned i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        setUp();
+        send(ARCOS_CMD_SONAR, rows[i].value);
+        sip.flags = rows[i].flags;
+        sip.sonar_count = rows[i].listed;
+        argus_setup_sip(&setup, now_ms, &sip);
+        TEST_ASSERT_EQUAL(rows[i].open, argus_setup_is_open(&setup, ARGUS_SETUP_SONAR));
+    }
+}
+
+// However long an order stays away, what is counted of it does not come round to 0.
+void test_counts_end_at_their_most(void) {
+    static const uint8_t order[] = {1, 2};
+    uint8_t packet[ARGUS_PACKET_MAX];
+    argus_setup_sent(&setup, now_ms, packet,
+                     argus_command_string(packet, sizeof packet, ARCOS_CMD_POLLING, order, 2));
+    sip.sonar_count = 1;
+    sip.sonar[0].number = 9; // of an array that the order does not name
+    for (int i = 0; i < 300; i++) {
+        now_ms += 200;
+        setup.order[ARGUS_SETUP_POLLING].open = true;
+        argus_setup_sip(&setup, now_ms, &sip);
+    }
+    TEST_ASSERT_EQUAL(UINT8_MAX, setup.listed[9]);
+    setUp();
+    send(ARCOS_CMD_ENABLE, 1);
+    again(ARCOS_CMD_ENABLE, 300 * 8000);
+    TEST_ASSERT_EQUAL(UINT8_MAX, setup.order[ARGUS_SETUP_ENABLE].again);
+}
+
+// A clock that was set back is no reason to wait for seven weeks, nor to send on each call.
+void test_what_was_sent_in_the_future_is_not_due(void) {
+    send(ARCOS_CMD_ENABLE, 1);
+    TEST_ASSERT_EQUAL(-1, argus_setup_resend(&setup, &outbox, now_ms - 1, ALL_ROWS));
+    TEST_ASSERT_EQUAL(0, outbox.length);
+    TEST_ASSERT_EQUAL(-1, argus_setup_resend(&setup, &outbox, now_ms + 299, ALL_ROWS));
+    TEST_ASSERT_EQUAL(0, outbox.length);
+    argus_setup_resend(&setup, &outbox, now_ms + 300, ALL_ROWS);
+    TEST_ASSERT_GREATER_THAN(0, outbox.length);
+}
