@@ -343,7 +343,7 @@ void argus_common_turned_about(argus_common_t *const self, const uint32_t now_ms
 bool argus_common_doubts(const argus_common_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const int array = argus_robot_array_of(sonar);
-    return array < ARGUS_ARRAYS_MAX && self->of[array].doubted && (self->of[array].sonars >> sonar & 1u) != 0;
+    return self->of[array].doubted && (self->of[array].sonars >> sonar & 1u) != 0;
 }
 
 bool argus_common_strikes(const argus_common_t *const self, const argus_mask_t sonars) {
@@ -358,7 +358,7 @@ bool argus_common_strikes(const argus_common_t *const self, const argus_mask_t s
 bool argus_common_convicts(const argus_common_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const int array = argus_robot_array_of(sonar);
-    return array < ARGUS_ARRAYS_MAX && self->of[array].proven && (self->of[array].sonars >> sonar & 1u) != 0;
+    return self->of[array].proven && (self->of[array].sonars >> sonar & 1u) != 0;
 }
 
 bool argus_common_excuses(const argus_common_t *const self, const int sonar) {

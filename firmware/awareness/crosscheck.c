@@ -217,8 +217,7 @@ static void note_dispute(argus_evidence_t *const self, const argus_knowledge_t *
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     const int array = argus_robot_array_of(sonar);
     const argus_mask_t others = (argus_mask_t)(against & ~(unsigned)self->dark);
-    if ((self->dark >> sonar & 1u) == 0 || others == 0 || argus_ping_is_echo(at) ||
-        array >= ARGUS_ARRAYS_MAX) {
+    if ((self->dark >> sonar & 1u) == 0 || others == 0 || argus_ping_is_echo(at)) {
         return;
     }
     argus_dispute_t *const dispute = &self->dispute[array];
@@ -255,7 +254,8 @@ static void count(argus_evidence_t *const self, const argus_knowledge_t *const k
     }
     if (against != 0) {
         note_contradicted(self, knowledge, sonar, at, against);
-    } else if (argus_ping_is_echo(at) && is_since(knowledge, sonar, at)) {
+    } else if (is_since(knowledge, sonar, at)) {
+        ARGUS_ASSERT(argus_ping_is_echo(at)); // silences that agree are quiet
         c->agreed = argus_one_more(c->agreed);
     }
     if (c->score[ARGUS_TEST_PEERS] <= 0) {
@@ -382,7 +382,8 @@ static int32_t worth_as(const argus_evidence_t *const self, const argus_knowledg
     if (verdict == CONTRADICTED) {
         return worth_of(self, knowledge, sonar, true, deafness_of(self, sonar, at, tally));
     }
-    return verdict == AGREED ? worth_of(self, knowledge, sonar, false, 0) : 0;
+    ARGUS_ASSERT(verdict == AGREED);
+    return worth_of(self, knowledge, sonar, false, 0);
 }
 
 // From one place one reading counts; less far apart where a laser contradicts.
@@ -392,8 +393,8 @@ static int32_t place_of(const argus_knowledge_t *const knowledge, const tally_t 
 }
 
 // A fresh echo that others bear out, also where a silence at this place has counted already.
-static void bear_out(argus_case_t *const c, const argus_ping_t *const at, const verdict_t verdict) {
-    if (verdict == AGREED && argus_ping_is_echo(at)) {
+static void bear_out(argus_case_t *const c, const verdict_t verdict) {
+    if (verdict == AGREED) {
         c->borne_out = c->borne_out || c->score[ARGUS_TEST_PEERS] > 0;
     }
 }
@@ -414,7 +415,7 @@ static void weigh(argus_evidence_t *const self, const argus_knowledge_t *const k
         count_news(self, knowledge, sonar, at, verdict, tally->against, worth);
     }
     if (fresh) {
-        bear_out(&self->of[sonar], at, verdict);
+        bear_out(&self->of[sonar], verdict);
     }
     if (verdict != DIVIDED) {
         weigh_lags(self, knowledge, sonar, back, verdict, worth);

@@ -63,6 +63,7 @@ typedef struct {
     argus_hypothesis_t hypothesis[ARGUS_HYPOTHESES];
     argus_scale_t scale;
 } argus_case_t;
+_Static_assert(ARGUS_SONARS <= ARGUS_ARRAYS_MAX * ARCOS_TIMING_TRANSDUCERS_PER_ARRAY, "each is of an array");
 _Static_assert(sizeof(argus_case_t) == 128, "one shift leads to a case");
 
 // What sonars outside an array that is dark have heard where it was silent, in this SIP.

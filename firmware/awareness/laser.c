@@ -296,9 +296,7 @@ static void take_lag(argus_laser_t *const self, const sectors_t *const sectors, 
     const argus_scan_t *const then =
         scan_of(self, sectors->knowledge->sip_ms - (uint32_t)ARGUS_SCAN_LATE_STEP_MS);
     argus_misfit_t *const misfit = &self->misfit[lag];
-    if (then == NULL) {
-        return;
-    }
+    ARGUS_ASSERT(then != NULL); // the robot's turn since then is known
     const int32_t prompt_mm = misfit_mm(sectors, then, prompt);
     const int32_t late_mm = misfit_mm(sectors, then, late);
     if (prompt_mm < 0 || late_mm < 0) {

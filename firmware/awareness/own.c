@@ -111,8 +111,8 @@ static int32_t off_mm(const argus_ping_t *const now, const argus_ping_t *const t
 }
 
 static bool is_familiar(const argus_ping_t *const now, const argus_ping_t *const then) {
-    return argus_ping_is_echo(then) &&
-           off_mm(now, then) <= ARGUS_FAMILIAR_MM + argus_ping_moved_mm(now, then);
+    ARGUS_ASSERT(argus_ping_is_echo(then));
+    return off_mm(now, then) <= ARGUS_FAMILIAR_MM + argus_ping_moved_mm(now, then);
 }
 
 // What the last echoes on this bearing say to one more.

@@ -262,3 +262,108 @@ void test_a_retest_of_a_sector_is_one_of_the_laser(void) {
     TEST_ASSERT_EQUAL(0, evidence.laser.count);
 #endif
 }
+
+// What the sectors read is given; one of them varies, so that the scan is not frozen.
+static void show(const uint16_t mm[SECTORS], const int32_t heading_cdeg) {
+    k.sip_ms += STEP_MS;
+    k.pose.heading_cdeg = heading_cdeg;
+    for (int i = 0; i < SECTORS; i++) {
+        k.sonar[i].reading_mm = mm[i];
+    }
+    k.sonar[SECTORS - 1].reading_mm = (uint16_t)(3000 + k.sip_ms / STEP_MS % 2);
+    argus_laser_sip(&laser, &k);
+}
+
+static void nothing_in(uint16_t mm[SECTORS]) {
+    for (int i = 0; i < SECTORS; i++) {
+        mm[i] = ARGUS_NO_ECHO_MM;
+    }
+}
+
+// A wall whose foot is in the middle of the second sector, 72 degrees to the left.
+static void wall_in(uint16_t mm[SECTORS], const int at_mm) {
+    nothing_in(mm);
+    mm[1] = (uint16_t)at_mm;
+    mm[0] = mm[2] = (uint16_t)(at_mm + at_mm / 50);
+}
+
+// So many steps of 50 mm along x while that wall, square to the left, recedes by so much each.
+static void pass_wall(const int steps, const int from_mm, const int recedes_mm) {
+    for (int n = 0; n <= steps; n++) {
+        uint16_t mm[SECTORS];
+        wall_in(mm, from_mm + n * recedes_mm);
+        k.pose.x_mm = 50 * n;
+        show(mm, 1800);
+    }
+}
+
+// A wall abeam tells of the axis alone: its range says nothing of the scale, not even to divide by.
+void test_a_wall_abeam_tells_nothing_of_the_scale(void) {
+    pass_wall(8, 1500, 0);
+    TEST_ASSERT_GREATER_THAN(0, laser.slopes.tt);
+    TEST_ASSERT_EQUAL(0, laser.slopes.cc);
+    TEST_ASSERT_EQUAL(ARGUS_SCAN_SOUND, laser.fault);
+}
+
+// It stands: a range that changes by more than part of the way is of something else.
+void test_what_recedes_faster_than_the_way_is_no_wall(void) {
+    pass_wall(8, 1500, 10); // a fifth of the way
+    TEST_ASSERT_GREATER_THAN(0, laser.slopes.tt);
+    setUp();
+    pass_wall(8, 1500, 30);
+    TEST_ASSERT_EQUAL(0, laser.slopes.tt);
+}
+
+void test_a_wall_that_is_too_near_is_not_followed(void) {
+    for (int near = 0; near < 2; near++) {
+        setUp();
+        pass_wall(1, ARGUS_SCAN_WALL_LEAST_MM - near, 0);
+        int followed = 0;
+        for (int i = 0; i < ARGUS_SCAN_WALLS; i++) {
+            followed += laser.wall[i].scans > 0 ? 1 : 0;
+        }
+        TEST_ASSERT_EQUAL(1 - near, followed);
+    }
+}
+
+// Two scans of which less than half overlap cannot be compared, to either side.
+void test_scans_that_hardly_overlap_tell_of_no_lag(void) {
+    for (int side = -1; side <= 1; side += 2) {
+        for (int sectors = 7; sectors <= 8; sectors++) {
+            setUp();
+            int compared = 0;
+            for (int n = 0; n < 30; n++) {
+                uint16_t mm[SECTORS];
+                wall_in(mm, 2000);
+                show(mm, n < 15 ? 0 : side * sectors * WIDTH_DEG * 100);
+                compared += laser.misfit[0].scans;
+            }
+            TEST_ASSERT_EQUAL(sectors == 7, compared > 0);
+        }
+    }
+}
+
+// Returns that end at one range: often, far more often than anywhere nearer, and none from beyond.
+void test_a_cut_takes_each_of_its_signs(void) {
+    static const struct {
+        uint8_t edges, inner;
+        uint16_t most_mm;
+        uint32_t way_mm;
+        bool found;
+    } rows[] = {{10, 2, 3999, 3000, true}, {9, 2, 3999, 3000, false},  {10, 3, 3999, 3000, false},
+                {12, 3, 3999, 3000, true}, {10, 2, 4000, 3000, false}, {10, 2, 3999, 2999, false},
+                {10, 0, 3500, 3500, true}};
+    for (unsigned i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        uint16_t mm[SECTORS];
+        setUp();
+        wall_in(mm, 1000);
+        show(mm, 0);
+        laser.edges = rows[i].edges;
+        laser.inner = rows[i].inner;
+        laser.most_mm = rows[i].most_mm;
+        k.odometer_mm += rows[i].way_mm;
+        show(mm, 0);
+        TEST_ASSERT_EQUAL(rows[i].found, laser.fault == ARGUS_SCAN_CUT);
+        TEST_ASSERT_EQUAL(rows[i].way_mm < 3000 ? rows[i].edges : 0, laser.edges); // a stretch begins anew
+    }
+}

@@ -156,3 +156,73 @@ void test_what_is_not_of_now_or_out_or_too_far_or_near_is_not_heard(void) {
     see_wall(0, 1500, 90);
     TEST_ASSERT_EQUAL_INT(-1, heard(180, &mm));
 }
+
+static argus_shape_t shape_of(const int sector, const int mm, const int left_mm, const int right_mm) {
+    int32_t aside_cdeg = 0;
+    for (int i = FIRST; i < FIRST + SECTORS; i++) {
+        k.sonar[i].reading_mm = ARGUS_NO_ECHO_MM;
+    }
+    k.sonar[sector].reading_mm = (uint16_t)mm;
+    k.sonar[sector - 1].reading_mm = (uint16_t)left_mm;
+    k.sonar[sector + 1].reading_mm = (uint16_t)right_mm;
+    return argus_scan_shape(&k, sector, &aside_cdeg);
+}
+
+// A wall is seen on either side; where one of them returns nothing it is an edge, whichever that is.
+void test_a_wall_takes_a_return_on_either_side(void) {
+    const int at = sector_at(0);
+    TEST_ASSERT_EQUAL(ARGUS_SHAPE_WALL, shape_of(at, 1500, 1530, 1530));
+    TEST_ASSERT_EQUAL(ARGUS_SHAPE_EDGE, shape_of(at, 1500, ARGUS_NO_ECHO_MM, 1530));
+    TEST_ASSERT_EQUAL(ARGUS_SHAPE_EDGE, shape_of(at, 1500, 1530, ARGUS_NO_ECHO_MM));
+    TEST_ASSERT_EQUAL(ARGUS_SHAPE_NONE, shape_of(at, 1500, 1499, 1530));
+    TEST_ASSERT_EQUAL(ARGUS_SHAPE_NONE, shape_of(at, 1500, 1530, 1499));
+}
+
+// At the rim it takes both beside it, that grow as a wall's do.
+void test_at_the_rim_both_beside_it_must_be_of_the_wall(void) {
+    static const struct {
+        int mm, next_mm, second_mm;
+        argus_shape_t shape;
+    } rows[] = {{1500, 1530, 1630, ARGUS_SHAPE_WALL},
+                {1500, ARGUS_NO_ECHO_MM, 1630, ARGUS_SHAPE_NONE},
+                {1500, 1530, ARGUS_NO_ECHO_MM, ARGUS_SHAPE_NONE},
+                {1500, 1530, 2300, ARGUS_SHAPE_NONE},  // the foot would lie far beyond the rim
+                {1500, 1800, 1800, ARGUS_SHAPE_NONE},  // ... far within
+                {1200, 1530, 1630, ARGUS_SHAPE_NONE}}; // it stands before the wall
+    for (unsigned i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        for (int side = 0; side < 2; side++) {
+            int32_t aside_cdeg = 0;
+            const int at = side == 0 ? FIRST : FIRST + SECTORS - 1;
+            const int inwards = side == 0 ? 1 : -1;
+            k.sonar[at].reading_mm = (uint16_t)rows[i].mm;
+            k.sonar[at + inwards].reading_mm = (uint16_t)rows[i].next_mm;
+            k.sonar[at + 2 * inwards].reading_mm = (uint16_t)rows[i].second_mm;
+            TEST_ASSERT_EQUAL(rows[i].shape, argus_scan_shape(&k, at, &aside_cdeg));
+        }
+    }
+}
+
+// Of two things that it must hear it hears the nearer, whichever is listed first.
+void test_of_two_edges_the_nearer_is_heard(void) {
+    for (int nearer = 0; nearer < 2; nearer++) {
+        int32_t mm = 0;
+        for (int i = FIRST; i < FIRST + SECTORS; i++) {
+            k.sonar[i].reading_mm = ARGUS_NO_ECHO_MM;
+        }
+        own.poses[SONAR].x_mm = -3000; // so far behind that both lie well within its cone
+        const int first = sector_at(WIDTH_DEG), second = sector_at(-WIDTH_DEG);
+        k.sonar[first].reading_mm = nearer == 0 ? 800 : 900;
+        k.sonar[second].reading_mm = nearer == 0 ? 900 : 800;
+        TEST_ASSERT_EQUAL(nearer == 0 ? first : second, heard(0, &mm));
+    }
+}
+
+// A laser alone: its first sector is the robot's first sensor.
+void test_a_robot_without_sonars_has_a_rim_too(void) {
+    int32_t aside_cdeg = 0;
+    sectors_begin(&own, &k, 0, SECTORS, WIDTH_DEG);
+    k.sonar[0].reading_mm = 1500;
+    k.sonar[1].reading_mm = 1530;
+    k.sonar[2].reading_mm = 1630;
+    TEST_ASSERT_EQUAL(ARGUS_SHAPE_WALL, argus_scan_shape(&k, 0, &aside_cdeg));
+}
