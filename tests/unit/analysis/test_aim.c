@@ -93,3 +93,71 @@ void test_it_is_not_turned_onto_what_it_has_looked_at(void) {
     k.pose.heading_cdeg = 0;
     TEST_ASSERT_FALSE(aims(3));
 }
+
+// What sonar 4 heard where 3 would look after such a turn, from just there.
+static argus_ping_t *heard_after(const int32_t turn_cdeg, const int mm, const uint32_t age_ms) {
+    argus_pose_t turned = k.pose;
+    turned.heading_cdeg = argus_angle_wrap(turned.heading_cdeg + turn_cdeg);
+    argus_ping_t at = argus_ping_from(k.robot, 3, &turned);
+    at.t_ms = (uint16_t)((k.sip_ms - age_ms) & 0xFFFFu);
+    at.reading_mm = (uint16_t)mm;
+    argus_pings_note(&e.pings[4], at);
+    return argus_pings_mark(&e.pings[4], 1);
+}
+
+void test_each_bound_of_what_is_worth_a_turn(void) {
+    static const struct {
+        int32_t turn_cdeg;
+        int mm;
+        uint32_t age_ms;
+        bool worth;
+    } rows[] = {{2000, 250, 0, true},    {2000, 249, 0, false},     {2000, 4400, 0, true},
+                {2000, 4401, 0, false},  {2000, 1200, 10000, true}, {2000, 1200, 10001, false},
+                {300, 1200, 0, true},    {299, 1200, 0, false},     {-300, 1200, 0, true},
+                {10000, 1200, 0, true},  {10001, 1200, 0, false},   {-10000, 1200, 0, true},
+                {-10001, 1200, 0, false}};
+    for (unsigned i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        setUp();
+        heard_after(rows[i].turn_cdeg, rows[i].mm, rows[i].age_ms);
+        TEST_ASSERT_EQUAL(rows[i].worth, aims(3));
+        TEST_ASSERT_TRUE(!rows[i].worth || aim_cdeg == rows[i].turn_cdeg);
+    }
+}
+
+// Turned by -10 degrees it looks along x: what is beside it is across, what is before it along.
+void test_only_from_about_its_place(void) {
+    static const struct {
+        int x_mm, y_mm;
+        bool worth;
+    } rows[] = {{200, 0, true}, {201, 0, false}, {-200, 0, true}, {-201, 0, false},
+                {0, 60, true},  {0, 61, false},  {0, -60, true},  {0, -61, false}};
+    for (unsigned i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        setUp();
+        argus_ping_t *const there = heard_after(-1000, 1200, 0);
+        TEST_ASSERT_EQUAL(0, there->bearing_cdeg);
+        there->x_mm = (uint16_t)(there->x_mm + rows[i].x_mm);
+        there->y_mm = (uint16_t)(there->y_mm + rows[i].y_mm);
+        TEST_ASSERT_EQUAL(rows[i].worth, aims(3));
+    }
+}
+
+// It has looked there itself: lately, from about there, on about that bearing; each of them by itself.
+void test_each_bound_of_having_looked_there(void) {
+    static const struct {
+        uint32_t age_ms;
+        int x_mm, turned_cdeg;
+        bool looked;
+    } rows[] = {{0, 0, 0, true},    {10000, 0, 0, true}, {10001, 0, 0, false}, {0, 200, 0, true},
+                {0, 201, 0, false}, {0, 0, 300, true},   {0, 0, 301, false},   {0, 0, -300, true}};
+    for (unsigned i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        setUp();
+        argus_ping_t own = *heard_after(-1000, 1200, 0);
+        own.t_ms = (uint16_t)((k.sip_ms - rows[i].age_ms) & 0xFFFFu);
+        own.x_mm = (uint16_t)(own.x_mm + rows[i].x_mm);
+        own.bearing_cdeg = (int16_t)(own.bearing_cdeg + rows[i].turned_cdeg);
+        argus_pings_note(&e.pings[3], own);
+        own.x_mm = (uint16_t)(own.x_mm + 3000); // the last one was elsewhere: each is asked
+        argus_pings_note(&e.pings[3], own);
+        TEST_ASSERT_EQUAL(!rows[i].looked, aims(3));
+    }
+}

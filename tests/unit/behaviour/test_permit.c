@@ -104,3 +104,15 @@ void test_without_a_session_nothing_may(void) {
     robot.argus.session.state = ARGUS_SESSION_SYNC1;
     check_all(ARGUS_PERMIT_NO_ROBOT, ARGUS_PERMIT_NO_ROBOT, ARGUS_PERMIT_NO_ROBOT);
 }
+
+// A way that is remembered bars a client's turn only by the rules that remember: the paper's go by what is
+// heard.
+void test_a_profile_without_memory_asks_the_echoes_of_now(void) {
+    const argus_config_t paper = robot_config_of(ARGUS_PROFILE_PAPER);
+    robot.argus.rules = argus_profile(&paper);
+    TEST_ASSERT_EQUAL(ARGUS_PERMIT_GIVEN, ask(ARGUS_MOVER_CLIENT, ARGUS_WANTS_TURN, 3000));
+    for (int i = 0; i < 8; i++) {
+        robot.argus.knowledge.sonar[i].reading_mm = 120;
+    }
+    TEST_ASSERT_NOT_EQUAL(ARGUS_PERMIT_GIVEN, ask(ARGUS_MOVER_CLIENT, ARGUS_WANTS_TURN, 3000));
+}

@@ -10,6 +10,7 @@
 #include "behaviour/state.h"
 #include "health.h"
 #include "robot.h"
+#include "supervisor/history.h"
 #include "supervisor/manager.h"
 #include "unity.h"
 
@@ -107,4 +108,62 @@ void test_a_ring_with_a_fault_changes_nothing(void) {
     const argus_robot_t *const before = argus->knowledge.robot;
     TEST_ASSERT_EQUAL(ARGUS_RING_NAME, argus_set_ring(argus, &own, &nameless).fault);
     TEST_ASSERT_EQUAL_PTR(before, argus->knowledge.robot);
+}
+
+// A name without a kind of fault is one of a kind that is not known: `wrong` says the least.
+void test_a_record_without_a_kind_puts_on_probation_as_wrong(void) {
+    static uint8_t record[ARGUS_RECORD_BYTES];
+    put_health(&core->knowledge.sonar[3], ARGUS_PROBATION, ARGUS_KIND_NONE, core->now_ms);
+    TEST_ASSERT_EQUAL(ARGUS_RECORD_BYTES, argus_record_save(core, record, sizeof record));
+    setUp();
+    TEST_ASSERT_TRUE(argus_record_load(core, record, sizeof record));
+    TEST_ASSERT_EQUAL(ARGUS_PROBATION, core->knowledge.sonar[3].health);
+    TEST_ASSERT_EQUAL(ARGUS_KIND_WRONG, core->knowledge.sonar[3].kind);
+}
+
+// What belongs to another robot is taken back of those that it put on probation, and only while they are.
+void test_what_another_robots_record_says_is_taken_back(void) {
+    core->history.loaded = true;
+    core->history.robot = 4711;
+    core->history.recorded = 1u << 3 | 1u << 4;
+    put_health(&core->knowledge.sonar[3], ARGUS_PROBATION, ARGUS_KIND_OFF, core->now_ms);
+    put_health(&core->knowledge.sonar[4], ARGUS_DISABLED, ARGUS_KIND_OFF, core->now_ms); // in this mission
+    put_health(&core->knowledge.sonar[5], ARGUS_PROBATION, ARGUS_KIND_OFF, core->now_ms);
+    argus_meet_robot(core);
+    TEST_ASSERT_EQUAL(ARGUS_UNKNOWN, core->knowledge.sonar[3].health);
+    TEST_ASSERT_EQUAL(ARGUS_DISABLED, core->knowledge.sonar[4].health);
+    TEST_ASSERT_EQUAL(ARGUS_PROBATION, core->knowledge.sonar[5].health);
+    TEST_ASSERT_EQUAL(0, core->history.recorded);
+}
+
+// Not of a record of no robot's, of the same robot, or of none that was read.
+void test_a_record_of_no_robot_is_this_ones(void) {
+    const uint32_t own = core->history.robot;
+    static const struct {
+        bool loaded, other, named, kept;
+    } rows[] = {{true, true, true, false},
+                {false, true, true, true},
+                {true, false, true, true},
+                {true, true, false, true}};
+    for (unsigned i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        setUp();
+        core->history.loaded = rows[i].loaded;
+        core->history.robot = !rows[i].named ? 0 : rows[i].other ? own + 1 : own;
+        core->history.recorded = 1u << 3;
+        put_health(&core->knowledge.sonar[3], ARGUS_PROBATION, ARGUS_KIND_OFF, core->now_ms);
+        argus_meet_robot(core);
+        TEST_ASSERT_EQUAL(rows[i].kept ? ARGUS_PROBATION : ARGUS_UNKNOWN, core->knowledge.sonar[3].health);
+        TEST_ASSERT_EQUAL(own, core->history.robot);
+        TEST_ASSERT_FALSE(core->history.loaded);
+    }
+}
+
+// Only what another body cannot have been told of keeps its health: one that was never known has none to
+// lose.
+void test_a_body_that_changes_forgets_each_health_that_may_be_forgotten(void) {
+    core->knowledge.sonar[2].health = ARGUS_UNKNOWN;
+    meet("p3at-sh");
+    for (int i = 0; i < core->knowledge.sonars; i++) {
+        TEST_ASSERT_EQUAL(ARGUS_UNKNOWN, core->knowledge.sonar[i].health);
+    }
 }

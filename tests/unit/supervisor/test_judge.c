@@ -5,6 +5,7 @@
 #include "supervisor/judge.h"
 
 #include "awareness/numbers.h"
+#include "behaviour/reverse.h"
 #include "behaviour/state.h"
 #include "health.h"
 #include "robot.h"
@@ -157,4 +158,134 @@ void test_an_array_that_was_never_listed_is_missing(void) {
     sonar(BEHIND)->heard_ms = core->knowledge.sip_ms - (uint32_t)core->config.stale_ms - 1;
     judge(BEHIND);
     TEST_ASSERT_EQUAL(ARGUS_ABSENT, sonar(BEHIND)->health);
+}
+
+// ---- what names and looks do
+
+// Under rules that do not drive by what others have seen, each conviction ahead is checked at rest.
+void test_a_conviction_breaks_off_by_each_of_its_reasons(void) {
+    core->mode = ARGUS_MODE_DRIVING;
+    argus_profile_t rules = *argus_rules(core);
+    rules.drives_seen = 0;
+    core->rules = &rules;
+    score(AHEAD, ARGUS_TEST_STUCK, ARGUS_CEILING);
+    judge(AHEAD);
+    TEST_ASSERT_EQUAL(ARGUS_DO_CHECK, intent.act);
+    setUp();
+    core->mode = ARGUS_MODE_DRIVING;
+    for (int i = 1; i <= 3; i++) { // with the fourth most of the front is lost, and the rear is sound
+        put_health(sonar(i), ARGUS_DISABLED, ARGUS_KIND_OFF, core->now_ms);
+    }
+    score(4, ARGUS_TEST_STUCK, ARGUS_CEILING);
+    judge(4);
+    TEST_ASSERT_TRUE(argus_should_turn_about(core));
+    TEST_ASSERT_EQUAL(ARGUS_DO_CHECK, intent.act);
+}
+
+// With the rear ahead, a front that is whole again is to lead: that is decided at rest.
+void test_a_sonar_that_makes_the_other_end_better_breaks_off(void) {
+    for (int about = 0; about < 2; about++) {
+        setUp();
+        core->mode = ARGUS_MODE_DRIVING;
+        if (about != 0) {
+            core->knowledge.robot = argus_robot_other_end(core->knowledge.robot);
+            core->plan = argus_plan(core->knowledge.robot, argus_policy(core), 0, 0);
+        }
+        put_health(sonar(AHEAD), ARGUS_PROBATION, ARGUS_KIND_WRONG, core->now_ms - 4000);
+        core->evidence.of[AHEAD].agreed = 200;
+        judge(AHEAD);
+        TEST_ASSERT_EQUAL(ARGUS_HEALTHY, sonar(AHEAD)->health);
+        TEST_ASSERT_EQUAL(about != 0 ? ARGUS_DO_CHECK : ARGUS_DO_NOTHING, intent.act);
+    }
+}
+
+// Four seconds on probation, four agreements, twice as many after each relapse, up to four times doubled.
+void test_probation_ends_by_time_and_agreements(void) {
+    static const int wanted[] = {4, 8, 16, 32, 64, 64};
+    for (int relapses = 0; relapses < 6; relapses++) {
+        for (int less = 0; less < 2; less++) {
+            for (int early = 0; early < 2; early++) {
+                setUp();
+                put_health(sonar(AHEAD), ARGUS_PROBATION, ARGUS_KIND_WRONG,
+                           core->now_ms - 4000 + (uint32_t)early);
+                sonar(AHEAD)->relapses = (uint8_t)relapses;
+                core->evidence.of[AHEAD].agreed = (uint8_t)(wanted[relapses] - less);
+                judge(AHEAD);
+                TEST_ASSERT_EQUAL(less == 0 && early == 0 ? ARGUS_HEALTHY : ARGUS_PROBATION,
+                                  sonar(AHEAD)->health);
+            }
+        }
+    }
+}
+
+// One that is out goes on probation after as many as a first relapse takes, however often it was out.
+void test_one_that_is_out_is_tried_after_four_agreements(void) {
+    for (int less = 0; less < 2; less++) {
+        setUp();
+        put_health(sonar(AHEAD), ARGUS_DISABLED, ARGUS_KIND_WRONG, core->now_ms - 4000);
+        sonar(AHEAD)->relapses = 3;
+        core->evidence.of[AHEAD].agreed = (uint8_t)(4 - less);
+        judge(AHEAD);
+        TEST_ASSERT_EQUAL(less == 0 ? ARGUS_PROBATION : ARGUS_DISABLED, sonar(AHEAD)->health);
+    }
+}
+
+// At the bound of the setting it is not silent yet, one more and it is.
+void test_silence_is_longer_than_its_bound(void) {
+    for (uint32_t more = 0; more < 2; more++) {
+        setUp();
+        core->firing = (argus_firing_t){0};
+        sonar(BEHIND)->heard_ms = core->knowledge.sip_ms - (uint32_t)core->config.stale_ms - more;
+        judge(BEHIND);
+        TEST_ASSERT_EQUAL(more != 0 ? ARGUS_DISABLED : ARGUS_HEALTHY, sonar(BEHIND)->health);
+    }
+}
+
+// A firing order that is older than a sonar may be silent excuses nobody.
+void test_an_old_firing_order_passes_nobody_over(void) {
+    const bool polled = (argus_robot_polled(core->knowledge.robot) >> BEHIND & 1u) != 0;
+    for (uint32_t older = 0; older < 2; older++) {
+        setUp();
+        sonar(BEHIND)->heard_ms = core->knowledge.sip_ms - (uint32_t)core->config.stale_ms - 1;
+        core->firing = (argus_firing_t){.ordered = true,
+                                        .ordered_ms = core->now_ms - (uint32_t)core->config.stale_ms - older};
+        judge(BEHIND);
+        TEST_ASSERT_EQUAL(older == 0 && polled ? ARGUS_HEALTHY : ARGUS_DISABLED, sonar(BEHIND)->health);
+    }
+}
+
+// A name takes a second of its own before it is said; then the sonar is a suspect with that name, and the
+// second mission in a row that names it warns, once.
+void test_a_name_is_said_once_it_stands(void) {
+    for (int missions = 0; missions < 2; missions++) {
+        setUp();
+        sonar(AHEAD)->missions_named = (uint8_t)missions;
+        score(AHEAD, ARGUS_TEST_GARBAGE, argus_bounds[ARGUS_TEST_GARBAGE].naming);
+        const uint32_t began_ms = core->now_ms;
+        judge(AHEAD);
+        core->now_ms = began_ms + 999;
+        judge(AHEAD);
+        TEST_ASSERT_EQUAL(0, events(ARGUS_EV_SONAR_NAMED));
+        core->now_ms = began_ms + 1000;
+        judge(AHEAD);
+        judge(AHEAD);
+        TEST_ASSERT_EQUAL(ARGUS_SUSPECT, sonar(AHEAD)->health);
+        TEST_ASSERT_EQUAL(ARGUS_KIND_GARBAGE, sonar(AHEAD)->kind);
+        TEST_ASSERT_EQUAL(1, events(ARGUS_EV_SONAR_NAMED));
+        TEST_ASSERT_EQUAL(missions, events(ARGUS_EV_SONAR_DEGRADING));
+    }
+}
+
+// A suspicion goes with its evidence, but neither during the looks that are to judge it nor before the look
+// that an operator has asked for.
+void test_a_suspicion_goes_with_its_evidence(void) {
+    for (int kept = 0; kept < 3; kept++) {
+        setUp();
+        put_health(sonar(AHEAD), ARGUS_SUSPECT, ARGUS_KIND_GARBAGE, core->now_ms);
+        score(AHEAD, ARGUS_TEST_GARBAGE, 0);
+        core->mode = kept == 1 ? ARGUS_MODE_VERIFYING : ARGUS_MODE_DRIVING;
+        core->looks.asked = kept == 2;
+        judge(AHEAD);
+        TEST_ASSERT_EQUAL(kept == 0 ? ARGUS_HEALTHY : ARGUS_SUSPECT, sonar(AHEAD)->health);
+    }
 }
