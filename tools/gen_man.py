@@ -180,7 +180,7 @@ PAGES = (
     Page(
         name="argus-ros",
         what="is the ROS 2 node of a robot that argusd minds",
-        command=(sys.executable, "-m", "argus_ros.programs", "argus-ros"),
+        command=(sys.executable, "-m", "argus_ros.cli", "argus-ros"),
         synopsis=("[--ros-args ARGUMENTS]",),
         description=(
             "argus-ros tells on the topics of a driver what argusd knows: a range for each sonar, a cloud of echoes, "
@@ -193,7 +193,7 @@ PAGES = (
     Page(
         name="argus-range-guard",
         what="is a ROS 2 node that repairs the sonar ranges of any driver",
-        command=(sys.executable, "-m", "argus_ros.programs", "argus-range-guard"),
+        command=(sys.executable, "-m", "argus_ros.cli", "argus-range-guard"),
         synopsis=("[--ros-args ARGUMENTS]",),
         description=(
             "argus-range-guard runs the fault manager on the sensor_msgs/Range topics and the odometry of any driver, "

@@ -12,7 +12,7 @@ from hil_sim.arguments import EXIT_USAGE as EXIT_USAGE
 from hil_sim.arguments import Parser as Parser
 from hil_sim.bench import plan
 
-EXIT_FAILED, EXIT_INTERRUPTED = 1, 130
+EXIT_FAILED = 1
 _JOBS_MOST: Final = 4096
 
 

@@ -16,7 +16,6 @@ from hil_sim.arguments import offer
 from hil_sim.bench import cli_passive, journey_cli, lasers, plan, pool, quick, recorded_cli
 from hil_sim.bench.arguments import (
     EXIT_FAILED,
-    EXIT_INTERRUPTED,
     EXIT_USAGE,
     Parser,
     jobs,
@@ -32,6 +31,7 @@ from hil_sim.bench.show import timeline
 from hil_sim.bench.store import RESULTS, Store
 from hil_sim.bench.work import run_case, world_files
 from hil_sim.errors import InputError, SimError
+from hil_sim.start import EXIT_INTERRUPTED
 
 PROG: Final = "argus-sim bench diagnosis"
 _PROFILES: Final = "paper,argus"

@@ -19,7 +19,7 @@ from typing import Any, Final
 from hil_sim.bench import ablate as ablation
 from hil_sim.bench import likelihoods as counting
 from hil_sim.bench import plan, pool, variants
-from hil_sim.bench.arguments import EXIT_FAILED, EXIT_INTERRUPTED, Parser, jobs, kinds, say, seeds
+from hil_sim.bench.arguments import EXIT_FAILED, Parser, jobs, kinds, say, seeds
 from hil_sim.bench.drive import SPEED_MM_S, record_to
 from hil_sim.bench.passive import Verdict
 from hil_sim.bench.progress import Progress
@@ -28,6 +28,7 @@ from hil_sim.bench.stream import missing, stream_path
 from hil_sim.bench.work import core_digest
 from hil_sim.core.library import library
 from hil_sim.errors import SimError
+from hil_sim.start import EXIT_INTERRUPTED
 from hil_sim.tables.robot import robot_table
 from hil_sim.world.physics import parse_physics
 

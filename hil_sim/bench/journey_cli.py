@@ -13,13 +13,14 @@ from typing import Any, Final
 
 from hil_sim.bench import journey as journeys
 from hil_sim.bench import plan, pool
-from hil_sim.bench.arguments import EXIT_FAILED, EXIT_INTERRUPTED, Parser, jobs, listed, say, seeds
+from hil_sim.bench.arguments import EXIT_FAILED, Parser, jobs, listed, say, seeds
 from hil_sim.bench.journey_report import write_report
 from hil_sim.bench.journey_track import RECORD_FORMAT, failed, run_case, work
 from hil_sim.bench.runner import fixed_core, keep
 from hil_sim.bench.show import timeline
 from hil_sim.bench.store import RESULTS, Store
 from hil_sim.errors import SimError
+from hil_sim.start import EXIT_INTERRUPTED
 
 PROG: Final = "argus-sim bench journey"
 QUICK_ROWS: Final = ("rooms", "rooms+one", "doors")

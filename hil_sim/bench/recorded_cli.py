@@ -14,12 +14,13 @@ from pathlib import Path
 from typing import Any, Final
 
 from hil_sim.bench import plan
-from hil_sim.bench.arguments import EXIT_FAILED, EXIT_INTERRUPTED, Parser, jobs, kinds, say, seeds
+from hil_sim.bench.arguments import EXIT_FAILED, Parser, jobs, kinds, say, seeds
 from hil_sim.bench.passive import Verdict
 from hil_sim.bench.report_passive import summarise, table
 from hil_sim.bench.semi_real import Drive, Run, drive_files, faults_of, read_drive, way_mm
 from hil_sim.bench.work import core_digest
 from hil_sim.errors import SimError
+from hil_sim.start import EXIT_INTERRUPTED
 
 _KINDS: Final = (*plan.FAULTS, "free")
 _SHORTEST_MM: Final = 3000.0

@@ -19,6 +19,7 @@ from hil_sim.conformance.checks import CHECKS, GROUPS
 from hil_sim.conformance.client import Client, Failed, NotApplicable, Target, parse_target
 from hil_sim.errors import SimError
 from hil_sim.output import EXIT_UNREAD, guarded
+from hil_sim.start import EXIT_INTERRUPTED
 from hil_sim.version import add_version
 
 PASS, FAIL, NOT_APPLICABLE = "pass", "fail", "not applicable"
@@ -158,7 +159,7 @@ def _run(argv: Sequence[str] | None) -> int:
         print(f"argus-conformance: {error}", file=sys.stderr)
         return 3 if error.exit_code == 1 else 2
     except KeyboardInterrupt:
-        return 130
+        return EXIT_INTERRUPTED
 
 
 def _list(checks: Sequence[Check]) -> None:

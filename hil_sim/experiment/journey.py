@@ -13,12 +13,13 @@ from pathlib import Path
 from typing import Any, Final
 
 from hil_sim.bench import pool
-from hil_sim.bench.arguments import EXIT_FAILED, EXIT_INTERRUPTED
+from hil_sim.bench.arguments import EXIT_FAILED
 from hil_sim.bench.runner import fixed_core, keep
 from hil_sim.bench.store import RESULTS, Store
 from hil_sim.errors import SimError
 from hil_sim.experiment.cases import SPLIT, make_cases, parse_id
 from hil_sim.experiment.drive import RECORD_FORMAT, Record, failed, run_case, work
+from hil_sim.start import EXIT_INTERRUPTED
 
 COLUMNS: Final = (
     "policy", "world", "seed", "dead", "day", "word", "truly", "course_mm", "t_s", "goal_mm", "driven_mm",

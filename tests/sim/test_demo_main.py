@@ -17,7 +17,7 @@ import pytest
 import yaml
 from demo_drive import FAULTS, WAYPOINTS, Record, made_up, named
 
-import hil_sim.demo.__main__ as program
+import hil_sim.demo.cli as program
 from hil_sim.demo.judge import Injected
 from hil_sim.demo.runner import ENDING, CannotStart, Recording, Setup
 
@@ -252,7 +252,7 @@ def test_signal_handlers_are_given_back(tmp_path: Path, played: type[Played]) ->
 
 def start(out: Path, *arguments: str, stdout: int = subprocess.PIPE) -> forks.Forked:
     return forks.start(
-        "hil_sim.demo.__main__:main",
+        "hil_sim.demo.cli:main",
         "--out",
         out,
         *arguments,

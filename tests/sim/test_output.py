@@ -37,12 +37,12 @@ PRINTING: Final = (
 )
 UNFINISHED: Final = (
     ("hil_sim.conformance.cli", "--list"),
-    ("hil_sim.demo.__main__", "--help"),
+    ("hil_sim.demo.cli", "--help"),
     ("argus_tools.monitor.cli", "--version"),
     ("argus_tools.flash_check", "--version"),
     ("argus_tools.foxglove_bridge", "--layout"),
-    ("argus_ros.programs", "argus-ros", "--help"),
-    ("argus_ros.programs", "argus-range-guard", "--help"),
+    ("argus_ros.cli", "argus-ros", "--help"),
+    ("argus_ros.cli", "argus-range-guard", "--help"),
 )
 """Of programs whose work is not done when nobody reads on: they end as a shell has it."""
 DEV: Final = ("prove", "--list"), ("--help",), ("test", "--list")

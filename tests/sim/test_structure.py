@@ -14,7 +14,7 @@ LINES_MAX = 500
 COMPLEXITY_MAX = 10
 # From the bottom to the top: a room uses those before it only.
 ROOMS = (
-    ("arguments", "errors", "output", "program", "version"),
+    ("arguments", "errors", "output", "program", "start", "version"),
     ("core", "native"),
     ("claim", "document", "tables"),
     ("arcos", "record"),
@@ -28,6 +28,7 @@ ROOMS = (
     ("bench", "demo", "conformance"),
     ("experiment",),
     ("cli",),
+    ("programs",),
 )
 
 

@@ -19,9 +19,10 @@ from serial.tools import list_ports
 
 from hil_sim.arguments import EXIT_USAGE, Parser, whole
 from hil_sim.output import EXIT_UNREAD, guarded
+from hil_sim.start import EXIT_INTERRUPTED
 from hil_sim.version import add_version
 
-EXIT_CHECKS, EXIT_LINE, EXIT_INTERRUPTED = 1, 3, 130
+EXIT_CHECKS, EXIT_LINE = 1, 3
 BAUD: Final = 115_200
 STACK_LEAST: Final = 256
 ARCOS_HEADER: Final = b"\xfa\xfb"

@@ -18,6 +18,7 @@ from devtool.stages import add_stage_options, staged_command
 from devtool.testing import QUICK_STAGES, SOAK_STAGES, TEST_STAGES
 from hil_sim.arguments import EXIT_USAGE, Parser
 from hil_sim.output import EXIT_UNREAD, guarded
+from hil_sim.start import EXIT_INTERRUPTED
 
 WHAT: Final = (
     "The one command of the project: sets everything up, then demonstrates, tests, builds or measures Argus."
@@ -181,9 +182,10 @@ def parse(argv: Sequence[str]) -> argparse.Namespace:
     return parser.parse_args(words)
 
 
-def main(argv: Sequence[str]) -> int:
+def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit code."""
-    return guarded("dev", lambda: _main(argv), EXIT_USAGE, EXIT_UNREAD)
+    words = sys.argv[1:] if argv is None else argv
+    return guarded("dev", lambda: _main(words), EXIT_USAGE, EXIT_UNREAD)
 
 
 def _main(argv: Sequence[str]) -> int:
@@ -198,4 +200,4 @@ def _main(argv: Sequence[str]) -> int:
         return stop.code
     except KeyboardInterrupt:
         print("dev: interrupted", file=sys.stderr)
-        return 130
+        return EXIT_INTERRUPTED

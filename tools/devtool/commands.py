@@ -51,7 +51,7 @@ def quietly(what: str, action: Callable[[Run], None]) -> None:
 
 _ENDS: Final = 100
 _JUDGE_DEMO: Final = f"""
-import sys; from hil_sim.demo.__main__ import parser
+import sys; from hil_sim.demo.cli import parser
 try:
     parser().parse_args(sys.argv[1:])
 except SystemExit as end:

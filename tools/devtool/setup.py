@@ -9,6 +9,7 @@ import hashlib
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tomllib
@@ -71,6 +72,7 @@ def run_steps(steps: Sequence[Command], log: Path) -> None:
 def leave_venv() -> None:
     """Start again with the interpreter that .venv was made with: what may be removed and made anew cannot run us."""
     if Path(sys.prefix) == VENV:
+        signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})  # until `begun` is there again
         os.execv(base_python(), [base_python(), *sys.orig_argv[1:]])
 
 

@@ -15,10 +15,10 @@ import forks
 import pytest
 
 from hil_sim.bench import runner
-from hil_sim.bench.arguments import EXIT_INTERRUPTED
 from hil_sim.bench.store import META, RESULTS
 from hil_sim.cli.main import main
 from hil_sim.core.library import LIBRARY_VARIABLE
+from hil_sim.start import EXIT_INTERRUPTED
 
 TINY = ("--worlds", "lab", "--kinds", "off,garbage", "--profiles", "argus", "--jobs", "1", "--no-plots")
 

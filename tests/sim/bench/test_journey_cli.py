@@ -14,9 +14,9 @@ from typing import Any
 import forks
 import pytest
 
-from hil_sim.bench.arguments import EXIT_INTERRUPTED
 from hil_sim.bench.store import RESULTS
 from hil_sim.cli.main import main
+from hil_sim.start import EXIT_INTERRUPTED
 
 TINY = ("journey", "--rows", "rooms", "--worlds", "lab", "--profiles", "argus", "--jobs", "1", "--no-plots")
 

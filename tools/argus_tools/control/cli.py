@@ -17,9 +17,10 @@ from argus_tools.control.words import event_line, evidence_line, readings_line, 
 from hil_sim.arguments import Parser, whole
 from hil_sim.faults.kinds import SONAR_KINDS
 from hil_sim.output import guarded
+from hil_sim.start import EXIT_INTERRUPTED
 from hil_sim.version import add_version
 
-EXIT_OK, EXIT_REFUSED, EXIT_UNWRITABLE, EXIT_UNREACHABLE, EXIT_INTERRUPTED = 0, 1, 2, 3, 130
+EXIT_OK, EXIT_REFUSED, EXIT_UNWRITABLE, EXIT_UNREACHABLE = 0, 1, 2, 3
 KINDS: Final = (*SONAR_KINDS, "delayed", "ok")
 TOPICS: Final = ("events", "state", "readings", "evidence")
 _SILENT_S: Final = 1.5

@@ -16,6 +16,7 @@ from argus_tools.log.exits import EXIT_CODES, EXIT_READ, EXIT_UNUSABLE
 from hil_sim.arguments import Parser
 from hil_sim.errors import InputError, SimError, missing_package
 from hil_sim.output import guarded, is_of_output
+from hil_sim.start import EXIT_INTERRUPTED
 from hil_sim.version import add_version
 
 # What each command is for; its module has EXAMPLES, add_arguments(parser) and run(args) -> exit code.
@@ -118,7 +119,7 @@ def _run(given: Sequence[str]) -> int:
         print(f"argus-log: {missing_package(error)}", file=sys.stderr)
         return EXIT_UNUSABLE
     except KeyboardInterrupt:
-        return EXIT_READ
+        return EXIT_READ if getattr(args, "follow", False) else EXIT_INTERRUPTED
     except OSError as error:
         if is_of_output(error):
             raise

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import os
 import select
 import signal
@@ -269,7 +270,8 @@ def run(args: argparse.Namespace) -> int:
     try:
         link.open()
         print(link.address, flush=True)
-        _serve(player, link, sys.stdin.fileno() if args.step else None)
+        with contextlib.suppress(KeyboardInterrupt):
+            _serve(player, link, sys.stdin.fileno() if args.step else None)
     finally:
         signal.signal(signal.SIGTERM, before)
         link.close()
