@@ -102,6 +102,27 @@ def test_a_sonar_that_dies(format_: str, tmp_path: Path, capsys: pytest.CaptureF
     assert [k for k, health in enumerate(events[-1]["health"]) if health == "DISABLED"] == [3]
 
 
+@pytest.mark.parametrize("format_", ["record", "jsonl", "candump", "pcapng"])
+@pytest.mark.parametrize("set_s", [0.0, 3600.0], ids=["right again", "set ahead"])
+@pytest.mark.parametrize("stands_s", [12.0, 40.0])
+def test_a_clock_that_stands_and_then_jumps_is_no_silence(
+    stands_s: float, set_s: float, format_: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    begin_s, end_s = 5.0, 5.0 + stands_s
+    chunks = [
+        chunk._replace(
+            t=begin_s if begin_s <= chunk.t < end_s else chunk.t + (set_s if chunk.t >= end_s else 0)
+        )
+        for chunk in timed(sips(600, dead=[3], dead_at=520))
+        if chunk.t is not None
+    ]
+    events = faults(write(tmp_path / "a.log", chunks, format_), capsys)
+    assert not [event["event"] for event in events if event["event"].startswith("LINK_") and event["level"]]
+    (disabled,) = named(events, "SONAR_DISABLED")
+    assert (disabled["name"], events[-1]["failure"]) == ("sonar/front/03", "IsMinor")
+    assert disabled["t"] == pytest.approx(52.0 + set_s, abs=0.5)
+
+
 def test_a_sonar_that_falls_silent(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     packets = sips(50)
     for i in range(50, 100):

@@ -67,7 +67,7 @@ class Timeline:
     Small disorder (DISORDER_S) is left as it is. A clock of the day goes on over midnight, one without a year over
     New Year. One that falls, or is set from a time since boot to one since 1970, goes on from where it was. Negative
     times are shifted to begin at 0. Of whole seconds only, the chunks of one second are spread evenly over it. Where
-    the clock stands the chunks have no time, as those of a log that keeps none.
+    the clock stands the chunks have no time, as those of a log that keeps none, but for the first.
 
     A log that is followed is not held up for that: its first whole seconds stay, and each later one is spread by how
     many chunks the one before it had.
@@ -161,21 +161,37 @@ class Timeline:
             self._damage.correct(Damage("its clock", what))
 
     def _moving(self, chunks: Iterator[Chunk]) -> Iterator[Chunk]:
-        """Take the time from what comes while the clock stands: nothing is known of when it came."""
+        """Take the time from what comes while the clock stands, but for the first: when it came is not known.
+
+        What may be such is held until that is clear, unless the log is followed.
+        """
+        held: list[Chunk] = []
         last: float | None = None
         count = size = 0
         for chunk in chunks:
             t = chunk.t
+            if t is None or t != last:
+                yield from held
+                held = []
             if t is None:
                 yield chunk
+                continue
+            if t == self._stands_at:
+                yield chunk._replace(t=None)
                 continue
             if t != last:
                 last, count, size = t, 0, 0
             count += 1
             size += len(chunk.data)
-            if count > STANDS_CHUNKS and size > STANDS_BYTES and t != self._stands_at:
+            held.append(chunk)
+            if count > STANDS_CHUNKS and size > STANDS_BYTES:
                 self._stand(t)
-            yield chunk if t != self._stands_at else chunk._replace(t=None)
+                yield from (one._replace(t=None) for one in held)
+                held = []
+            elif count == 1 or self._is_followed or len(held) == SECOND_MOST:
+                yield from held
+                held = []
+        yield from held
 
     def _paced(self, chunks: Iterator[Chunk]) -> Iterator[Chunk]:
         """Spread whole seconds without a look ahead."""

@@ -122,6 +122,7 @@ class Listener:
         self._start_ms = 0
         self._origin_ms = 0
         self._now_ms = 0
+        self._is_untimed = False
         self._held_off = 0
         self._arrays = _Arrays()
         self._heard = _ALL_ARRAYS
@@ -204,7 +205,9 @@ class Listener:
     def _clocks(self, rows: list[Row]) -> list[int]:
         """Return the log's clock at each of these SIPs, ms."""
         if rows[0].t is None:
+            self._is_untimed = True
             return [self._clock_ms + _SIP_MS * n for n in range(1, len(rows) + 1)]
+        self._rejoin(rows[0].t)
         times = itertools.accumulate(
             (round((row[0] or 0.0) * 1000) for row in rows), max, initial=self._clock_ms
         )
@@ -240,9 +243,17 @@ class Listener:
 
     def _pass_time(self, row: Row, is_read: bool) -> None:
         if row.t is not None:
+            self._rejoin(row.t)
             self._clock_ms = max(self._clock_ms, round(row.t * 1000))
         elif is_read:
+            self._is_untimed = True
             self._clock_ms += _SIP_MS
+
+    def _rejoin(self, t: float) -> None:
+        """Take a time behind SIPs without any as the next SIP's: how long a silence was between nobody knows."""
+        if self._is_untimed:
+            self._origin_ms += max(0, round(t * 1000) - self._clock_ms - _SIP_MS)
+        self._is_untimed = False
 
     @property
     def status(self) -> dict[str, Any] | None:

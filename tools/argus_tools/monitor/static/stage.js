@@ -149,6 +149,7 @@ export class Stage {
     if (!width || !height) return;
     this.half = Math.min(width, height) / 2;
     this.scale = this.half / SPANS_MM[this.span];
+    this.#size();
     this.#ground(width, height);
     // While it glides straight on the robot looks as before: to build it anew sixty times a second costs what the
     // next reading then waits for.
@@ -206,10 +207,9 @@ export class Stage {
     pen.fillStyle = ink;
     pen.strokeStyle = paper; // a rim, so that beams and circles do not cross the figures
     pen.lineWidth = 4;
-    for (let r = 1000; r <= NO_ECHO_MM; r += 1000) {
-      const [x, y] = polar(r * this.scale, SCALE_DEG);
-      pen.strokeText(`${r / 1000} m`, x, y + 4);
-      pen.fillText(`${r / 1000} m`, x, y + 4);
+    for (const [m, x, y] of this.#scaleLabels()) {
+      pen.strokeText(`${m} m`, x, y + 4);
+      pen.fillText(`${m} m`, x, y + 4);
     }
   }
 
@@ -277,11 +277,20 @@ export class Stage {
 
   // ---- robot
 
+  /** How large the ring of eyes is, and each eye. */
+  #size() {
+    this.ring = Math.max(RING_PART * this.half, RING_MIN, ((this.robot?.swing_mm ?? 0) + 90) * this.scale);
+    this.r = Math.max(8.5, Math.min(13, this.half * 0.03));
+  }
+
+  /** Where figures begin: what lies further in would be under the ring, or what is drawn around it. */
+  get #clear() {
+    return this.ring + 2.6 * this.r + 14;
+  }
+
   #figure(width, height) {
     this.svg.setAttribute("viewBox", `${-width / 2} ${-height / 2} ${width} ${height}`);
     if (!this.robot) return;
-    this.ring = Math.max(RING_PART * this.half, RING_MIN, (this.robot.swing_mm + 90) * this.scale);
-    this.r = Math.max(8.5, Math.min(13, this.half * 0.03));
     const turned = make("g", { transform: `rotate(${-this.pose.deg})` });
     const upright = make("g");
     const angles = ringAngles(this.robot.sonars);
@@ -317,13 +326,15 @@ export class Stage {
         labels.push({ one, mm, look, first: k === this.chosen ? 0 : look === "good" ? 2 : 1 });
       }
     }
-    const taken = [...this.#scaleLabels(), ...this.#planLabels()];
+    const taken = [...this.#scaleLabels().map(([, x, y]) => [x, y]), ...this.#planLabels()];
     for (const label of labels.sort((a, b) => a.first - b.first)) this.#label(upright, taken, label);
   }
 
-  /** Where the figures of the range circles stand. */
+  /** The metres of the range circles that have a figure, and where it stands. */
   #scaleLabels() {
-    return [1, 2, 3, 4, 5].map((m) => polar(m * 1000 * this.scale, SCALE_DEG));
+    return [1, 2, 3, 4, 5]
+      .filter((m) => m * 1000 * this.scale >= this.#clear)
+      .map((m) => [m, ...polar(m * 1000 * this.scale, SCALE_DEG)]);
   }
 
   /** The range at its echo, farther out where another figure stands, nowhere if there is no room: the list has it. */
@@ -333,7 +344,7 @@ export class Stage {
     for (const out of LABEL_OUT) {
       const [px, py] = polar(mm * this.scale + out, one.deg + this.pose.deg);
       const [x, y] = [px - fy * this.scale, py - fx * this.scale];
-      if (Math.hypot(x, y) < this.ring + 2.6 * this.r + 14) continue;
+      if (Math.hypot(x, y) < this.#clear) continue;
       if (Math.abs(x) > width / 2 - LABEL_WIDE / 2 || Math.abs(y) > height / 2 - LABEL_HIGH) continue;
       if (taken.some(([ox, oy]) => Math.abs(x - ox) < LABEL_WIDE && Math.abs(y - oy) < LABEL_HIGH)) continue;
       taken.push([x, y]);
