@@ -112,9 +112,10 @@ static int ask(const argus_evidence_t *const self, tally_t *const tally, const a
     const argus_pings_t *const pings = &self->pings[from];
     const argus_ping_t *const at = line->ping;
     const bool sector = argus_robot_is_sector(knowledge->robot, from);
+    uint32_t left = argus_pings_beside(pings, line);
     int latest = 0;
-    for (int back = argus_pings_near(pings, 1, line); back > 0;
-         back = argus_pings_near(pings, back + 1, line)) {
+    for (int back = argus_pings_near(pings, &left, line); back > 0;
+         back = argus_pings_near(pings, &left, line)) {
         const argus_ping_t *const then = argus_pings_at(pings, back);
         const argus_shift_t shift = argus_line_shift(line, then);
         if (shift.lateral_mm > ARGUS_SAME_LATERAL_MM || is_mute(self, from, then)) {
@@ -138,7 +139,8 @@ static tally_t ask_all(const argus_evidence_t *const self, const argus_knowledge
     const argus_line_t line = argus_ping_line(at);
     tally_t tally = {.agree = 0};
     for (int i = 0; i < knowledge->sonars; i++) {
-        if (argus_crosscheck_is_witness(self, knowledge, i, sonar)) {
+        if (argus_pings_beside(&self->pings[i], &line) != 0 &&
+            argus_crosscheck_is_witness(self, knowledge, i, sonar)) {
             ask(self, &tally, &line, i, knowledge);
         }
     }

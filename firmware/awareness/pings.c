@@ -8,7 +8,6 @@
 #include "knowledge/angle.h"
 
 #define SECTOR_CDEG (ARGUS_TURN_CDEG / ARGUS_PING_SECTORS)
-#define LAST (UINT32_MAX ^ UINT32_MAX >> 1) // of the bits of a log: the last ping
 
 static int32_t offset_mm(const uint16_t now_mm, const uint16_t then_mm) {
     const int32_t delta = (int32_t)((uint32_t)(now_mm - then_mm) & 0xFFFFu);
@@ -96,36 +95,20 @@ argus_line_t argus_ping_line(const argus_ping_t *const self) {
                                      (uint8_t)sector_of(self->bearing_cdeg + ARGUS_BESIDE_CDEG)}};
 }
 
-// Where the pings lie that may be beside a line, a bit each: the highest is the last one.
-static uint32_t those_beside(const argus_pings_t *const self, const argus_line_t *const line) {
-    _Static_assert(ARGUS_PINGS == 32, "a bit for each");
-    const uint32_t slots = self->looked[line->sector[0]] | self->looked[line->sector[1]];
-    return slots >> self->next | slots << (ARGUS_PINGS - self->next) % ARGUS_PINGS;
-}
-
 static bool is_near(const argus_ping_t *const a, const argus_ping_t *const b) {
     const int32_t turned = argus_abs(a->bearing_cdeg - b->bearing_cdeg);
     return (turned <= ARGUS_BESIDE_CDEG || turned >= ARGUS_TURN_CDEG - ARGUS_BESIDE_CDEG) &&
            argus_ping_is_within(a, b, ARGUS_SAME_ALONG_MM);
 }
 
-// Tens of thousands of pings are asked for in one SIP, and few of them looked that way.
-int argus_pings_near(const argus_pings_t *const self, const int from, const argus_line_t *const line) {
+// Thousands of pings are asked for in one SIP, and few of them looked that way.
+int argus_pings_near(const argus_pings_t *const self, uint32_t *const left, const argus_line_t *const line) {
     ARGUS_ASSERT(self->count <= ARGUS_PINGS && self->next < ARGUS_PINGS);
-    ARGUS_ASSERT(from >= 1);
-    if (from > self->count) {
-        return 0;
-    }
-    uint32_t left = those_beside(self, line) << (from - 1);
-    while (left != 0) {
-        const int zeros = argus_leading_zeros(left);
-        if (from + zeros > self->count) {
-            return 0;
+    while (*left != 0) {
+        const int back = ARGUS_PINGS - argus_take_highest(left);
+        if (is_near(line->ping, &self->ping[slot_of(self, back)])) {
+            return back;
         }
-        if (is_near(line->ping, &self->ping[slot_of(self, from + zeros)])) {
-            return from + zeros;
-        }
-        left &= ~(LAST >> zeros);
     }
     return 0;
 }

@@ -67,9 +67,17 @@ typedef struct {
 argus_line_t argus_ping_line(const argus_ping_t *self);
 argus_shift_t argus_line_shift(const argus_line_t *line, const argus_ping_t *then);
 
-// The last ping on the bearing of a line or beside it (BESIDE_CDEG), and from about its place
-// (SAME_ALONG_MM). It lies so far back (from 1) or farther; 0: none.
-int argus_pings_near(const argus_pings_t *self, int from, const argus_line_t *line);
+// The pings that may be on the bearing of a line or beside it, a bit each: the highest is the last one.
+static inline uint32_t argus_pings_beside(const argus_pings_t *const self, const argus_line_t *const line) {
+    _Static_assert(ARGUS_PINGS == 32, "a bit for each");
+    const uint32_t slots = self->looked[line->sector[0]] | self->looked[line->sector[1]];
+    const uint32_t all = slots >> self->next | slots << (ARGUS_PINGS - self->next) % ARGUS_PINGS;
+    return self->count > 0 ? all & UINT32_MAX << (ARGUS_PINGS - self->count) : 0;
+}
+
+// The last of them that is on the bearing of the line or beside it (BESIDE_CDEG), and from about its place
+// (SAME_ALONG_MM): how far back it lies, and only older ones are left. 0: none.
+int argus_pings_near(const argus_pings_t *self, uint32_t *left, const argus_line_t *line);
 
 // What `then` would read from the place of `now`, of a thing that stands.
 int32_t argus_ping_predict_mm(const argus_ping_t *now, const argus_ping_t *then);

@@ -34,6 +34,13 @@ static inline int argus_leading_zeros(const uint32_t mask) {
 #endif
 }
 
+// The highest bit of a mask that is not 0, which is taken out of it: 0 to 31.
+static inline int argus_take_highest(uint32_t *const mask) {
+    const int bit = 31 - argus_leading_zeros(*mask);
+    *mask &= ~((uint32_t)1 << bit);
+    return bit;
+}
+
 // A count of one more, up to 255.
 static inline uint8_t argus_one_more(const uint8_t count) {
     return (uint8_t)argus_min(count + 1, UINT8_MAX);

@@ -84,27 +84,44 @@ static bool shows(const argus_ray_t *const ray, const argus_point_t at) {
     return beside_mm <= along_mm * CONE_SLOPE / 128 + ARGUS_RAY_BESIDE_MM;
 }
 
-// The newest first: it is likeliest.
-static bool is_seen(const argus_rays_t *const self, const uint32_t now_ms, const argus_point_t at) {
-    const int count = now_ms - self->newest_ms > LATELY_MS ? 0 : self->count;
-    for (int i = 1; i <= count; i++) {
-        const argus_ray_t *const ray = &self->at[(self->next + ARGUS_RAYS_MAX - i) % ARGUS_RAYS_MAX];
-        if ((uint16_t)(now_ms - ray->t_ms) > LATELY_MS) {
-            return false;
-        }
-        if (shows(ray, at)) {
-            return true;
-        }
-    }
-    return false;
+static const argus_ray_t *ray_at(const argus_rays_t *const self, const int back) {
+    ARGUS_ASSERT(back >= 1 && back <= ARGUS_RAYS_MAX);
+    return &self->at[(self->next + ARGUS_RAYS_MAX - back) % ARGUS_RAYS_MAX];
 }
 
-static bool is_line_seen(const argus_rays_t *const self, const uint32_t now_ms,
-                         const argus_frame_t *const robot, const int32_t half_mm, const int32_t ahead_mm) {
-    ARGUS_ASSERT(half_mm > 0);
+// How many rays count, from the newest to the last before one that is too old.
+static int count_lately(const argus_rays_t *const self, const uint32_t now_ms) {
+    ARGUS_ASSERT(self->count <= ARGUS_RAYS_MAX);
+    const int most = now_ms - self->newest_ms > LATELY_MS ? 0 : self->count;
+    int count = 0;
+    while (count < most && (uint16_t)(now_ms - ray_at(self, count + 1)->t_ms) <= LATELY_MS) {
+        count++;
+    }
+    return count;
+}
+
+// The first of `count` rays that shows a place, the newest first: it is likeliest. NULL: none.
+static const argus_ray_t *seen_by(const argus_rays_t *const self, const int count, const argus_point_t at) {
+    for (int back = 1; back <= count; back++) {
+        if (shows(ray_at(self, back), at)) {
+            return ray_at(self, back);
+        }
+    }
+    return NULL;
+}
+
+// Seven places abreast. `by`: for each of them what showed the last one, which mostly shows this one, too.
+static bool is_line_seen(const argus_rays_t *const self, const int count, const argus_frame_t *const robot,
+                         const argus_point_t edge, const argus_ray_t *by[]) {
+    ARGUS_ASSERT(edge.y_mm > 0);
     for (int k = -ABREAST; k <= ABREAST; k++) {
-        const argus_point_t at = {ahead_mm, half_mm * k / ABREAST};
-        if (!is_seen(self, now_ms, argus_from_frame(robot, at))) {
+        const argus_point_t place = {edge.x_mm, edge.y_mm * k / ABREAST};
+        const argus_point_t at = argus_from_frame(robot, place);
+        const argus_ray_t **const last = &by[k + ABREAST];
+        if (*last == NULL || !shows(*last, at)) {
+            *last = seen_by(self, count, at);
+        }
+        if (*last == NULL) {
             return false;
         }
     }
@@ -116,9 +133,11 @@ int32_t argus_rays_seen_mm(const argus_rays_t *const self, const argus_knowledge
     ARGUS_ASSERT(half_mm > 0 && most_mm >= 0);
     const argus_frame_t robot = argus_frame_at(&knowledge->pose);
     const int32_t front_mm = knowledge->robot->front_mm;
+    const int count = count_lately(self, knowledge->sip_ms);
+    const argus_ray_t *by[2 * ABREAST + 1] = {NULL};
     int32_t seen_mm = 0;
     while (seen_mm < most_mm &&
-           is_line_seen(self, knowledge->sip_ms, &robot, half_mm, front_mm + seen_mm + STEP_MM)) {
+           is_line_seen(self, count, &robot, (argus_point_t){front_mm + seen_mm + STEP_MM, half_mm}, by)) {
         seen_mm += STEP_MM;
     }
     return argus_min(seen_mm, most_mm);

@@ -37,7 +37,7 @@ void argus_rays_forget_all(argus_rays_t *self);
 
 // How far ahead of the body, up to `most_mm`, the corridor of 2 x `half_mm` along its heading has been seen
 // in the last seconds. Each place of it lay within the cone of a trusted sonar and nearer than its echo.
-// Cost: 7 places for each 80 mm, each of them up to 128 rays.
+// Cost: 7 places for each 80 mm; for each the ray that showed the one before it, else up to 128 rays.
 int32_t argus_rays_seen_mm(const argus_rays_t *self, const argus_knowledge_t *knowledge, int32_t half_mm,
                            int32_t most_mm);
 

@@ -146,12 +146,15 @@ void test_all_that_is_near_is_found(void) {
                              ping((uint32_t)i, (65500 + 29 * i % 300) & 0xFFFF, 100, wrapped, 1000 + 40 * i));
         }
         const argus_line_t line = argus_ping_line(&at);
-        for (int from = 1; from <= log_.count + 1; from++) {
-            snprintf(text, sizeof text, "bearing %d from %d", bearing, from);
-            TEST_ASSERT_EQUAL_MESSAGE(near_by_definition(&at, from), argus_pings_near(&log_, from, &line),
-                                      text);
-            found += argus_pings_near(&log_, from, &line) > 0;
-        }
+        uint32_t left = argus_pings_beside(&log_, &line);
+        int back = 0;
+        do {
+            snprintf(text, sizeof text, "bearing %d from %d", bearing, back + 1);
+            const int expected = near_by_definition(&at, back + 1);
+            back = argus_pings_near(&log_, &left, &line);
+            TEST_ASSERT_EQUAL_MESSAGE(expected, back, text);
+            found += back > 0;
+        } while (back > 0);
     }
     TEST_ASSERT_TRUE(found > 1000);
 }
@@ -163,6 +166,7 @@ void test_another_bearing_is_never_near(void) {
         argus_pings_note(&log_, ping(0, 0, 0, 0, 1000));
         const argus_ping_t at = ping(1, 0, 0, turn > 18000 ? turn - 36000 : turn, 1000);
         const argus_line_t line = argus_ping_line(&at);
-        TEST_ASSERT_EQUAL(0, argus_pings_near(&log_, 1, &line));
+        uint32_t left = argus_pings_beside(&log_, &line);
+        TEST_ASSERT_EQUAL(0, argus_pings_near(&log_, &left, &line));
     }
 }
