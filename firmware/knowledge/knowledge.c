@@ -40,6 +40,10 @@ void argus_knowledge_reopen(argus_knowledge_t *const self, const uint32_t now_ms
     }
 }
 
+void argus_knowledge_unhear(argus_knowledge_t *const self) {
+    self->heard = 0;
+}
+
 // The raw position counts in 15 or 16 bits: the low 15 are right in both.
 static int32_t raw_delta(const uint16_t now, const uint16_t before) {
     const int32_t delta = (int32_t)((uint32_t)(now - before) & 0x7FFFu);

@@ -61,7 +61,7 @@ typedef struct {
     uint16_t x_raw;
     uint16_t y_raw;
     argus_mask_t fresh;   // sonars listed in the last SIP
-    argus_mask_t heard;   // sonars that have heard an echo since the session opened
+    argus_mask_t heard;   // sonars that have heard an echo since the session opened, or the readings began anew
     argus_mask_t listed;  // sonars that this robot has ever listed
     uint8_t strange_sips; // in a row with sonars that such a robot has not got
     argus_pose_t pose;
@@ -99,6 +99,9 @@ void argus_knowledge_sip(argus_knowledge_t *self, const argus_sip_t *sip, int32_
 // Only the odometry of a SIP (a session that is about to be closed).
 void argus_knowledge_odometry(argus_knowledge_t *self, const argus_sip_t *sip, int32_t distance_um,
                               uint32_t now_ms);
+
+// The readings begin anew: that a sonar heard something before does not show that it lives.
+void argus_knowledge_unhear(argus_knowledge_t *self);
 
 // The other end leads from now on: `robot` is argus_robot_other_end() of the present one. The robot is at
 // rest.
@@ -148,7 +151,7 @@ int32_t argus_reading_ahead_mm(const argus_knowledge_t *self, int sonar);
 // over while it is STALE, since no other is asked to look there.
 bool argus_counts_ahead(const argus_knowledge_t *self, int sonar);
 
-// The way driven since one of these heard an echo; UINT32_MAX: none has in this session.
+// The way driven since one of these heard an echo; UINT32_MAX: none has since the readings began.
 uint32_t argus_unheard_mm(const argus_knowledge_t *self, argus_mask_t sonars);
 
 // The nearest echo, in mm, of the flank sonars, those that are out and `except` left aside; INT32_MAX: none.

@@ -114,6 +114,7 @@ static void restart_evidence(argus_t *const self) {
     argus_extremes_restart(&self->extremes);
     argus_common_init(&self->common);
     argus_slip_restart(&self->slip);
+    argus_knowledge_unhear(&self->knowledge);
 }
 
 static void on_open(argus_t *const self) {

@@ -4,9 +4,11 @@
 from __future__ import annotations
 
 import random
+from pathlib import Path
 from typing import Final
 
 import pytest
+from dead_front import FRONT, Case
 
 from hil_sim.bench.journey_worlds import place_of
 from hil_sim.sil import Mission, Outcome, run
@@ -102,6 +104,20 @@ def test_late_readings_end_in_no_false_goal() -> None:
 def _stale(seed: int, ms: int) -> Outcome:
     faults = (_delay(2.5, None, ms, "to_client"),)
     return run(Mission("demo", ((900, 0), (1500, 300)), faults=faults, seed=seed, limit_s=60))
+
+
+@pytest.mark.parametrize("robot", ["p3dx-sh", "p3at-sh"])
+@pytest.mark.parametrize("box_x_mm", [3500.0, 4500.0])
+def test_what_was_heard_before_a_gap_shows_no_living_array_behind_it(
+    robot: str, box_x_mm: float, tmp_path: Path
+) -> None:
+    """The front dies in a bare hall while the robot stands for the link: nothing tells of it but the silence."""
+    file = tmp_path / "hall.yaml"
+    file.write_text(Case(walls="none", box_x_mm=box_x_mm).world(), encoding="utf-8")
+    faults = (*(f"off:{k}@4s" for k in FRONT), _delay(3, None, 300, "both"))
+    outcome = run(Mission(str(file), ((14_000, 0),), faults=faults, robot=robot, seed=3, limit_s=60))
+    assert "LINK_SLOW" in _names(outcome)
+    assert not _wrong(outcome), _wrong(outcome)
 
 
 @pytest.mark.wide
