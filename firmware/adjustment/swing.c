@@ -61,7 +61,18 @@ static bool meets_memory(const argus_knowledge_t *const knowledge, const argus_e
                          const int32_t by_cdeg) {
     for (int i = 0; i < echoes->count; i++) {
         argus_point_t at;
-        if (argus_echoes_beside(echoes, knowledge, i, &at) && is_met(knowledge->robot, at, by_cdeg)) {
+        if (argus_echoes_stands(echoes, knowledge, i, &at) && is_met(knowledge->robot, at, by_cdeg)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool meets_touched(const argus_knowledge_t *const knowledge, const argus_echoes_t *const echoes,
+                          const int32_t by_cdeg) {
+    const argus_touches_t *const touches = &echoes->touches;
+    for (int i = 0; i < touches->count; i++) {
+        if (is_met(knowledge->robot, argus_touches_seen(touches, knowledge, i), by_cdeg)) {
             return true;
         }
     }
@@ -70,5 +81,6 @@ static bool meets_memory(const argus_knowledge_t *const knowledge, const argus_e
 
 bool argus_swing_meets(const argus_knowledge_t *const knowledge, const argus_echoes_t *const echoes,
                        const int32_t by_cdeg) {
-    return meets_echo(knowledge, by_cdeg) || (echoes != NULL && meets_memory(knowledge, echoes, by_cdeg));
+    return meets_echo(knowledge, by_cdeg) || (echoes != NULL && (meets_memory(knowledge, echoes, by_cdeg) ||
+                                                                 meets_touched(knowledge, echoes, by_cdeg)));
 }

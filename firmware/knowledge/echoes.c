@@ -177,13 +177,13 @@ void argus_echoes_see(argus_echoes_t *const self, const argus_knowledge_t *const
     }
 }
 
-void argus_echoes_forget(argus_echoes_t *const self, const int sonar) {
+void argus_echoes_forget(argus_echoes_t *const self, const int sonar, const bool lied) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     uint16_t kept = 0;
     argus_grid_clear(&self->grid); // it cannot be separated from what the others put there
     mark_touches(self);
     for (uint16_t i = 0; i < self->count; i++) {
-        if (self->at[i].sonar != sonar) {
+        if (!lied || self->at[i].sonar != sonar) {
             self->at[kept++] = self->at[i];
         }
     }
@@ -253,7 +253,7 @@ bool argus_echoes_near(const argus_echoes_t *const self, const argus_knowledge_t
     return true;
 }
 
-bool argus_echoes_beside(const argus_echoes_t *const self, const argus_knowledge_t *const knowledge,
+bool argus_echoes_stands(const argus_echoes_t *const self, const argus_knowledge_t *const knowledge,
                          const int index, argus_point_t *const at) {
     ARGUS_ASSERT(index >= 0 && index < self->count);
     const argus_echo_t *const seen = &self->at[index];
@@ -264,7 +264,15 @@ bool argus_echoes_beside(const argus_echoes_t *const self, const argus_knowledge
         return false;
     }
     *at = place_of(seen, knowledge);
-    return at->x_mm > -knowledge->robot->rear_mm && at->x_mm < knowledge->robot->front_mm;
+    return true;
+}
+
+bool argus_echoes_beside(const argus_echoes_t *const self, const argus_knowledge_t *const knowledge,
+                         const int index, argus_point_t *const at) {
+    const argus_robot_t *const robot = knowledge->robot;
+    return argus_echoes_near(self, knowledge, index, at) ||
+           (argus_echoes_stands(self, knowledge, index, at) && at->x_mm > -robot->rear_mm &&
+            at->x_mm < robot->front_mm);
 }
 
 int32_t argus_echoes_nearest_mm(const argus_echoes_t *const self, const argus_knowledge_t *const knowledge,

@@ -41,10 +41,11 @@ typedef enum {
 
 void argus_echoes_init(argus_echoes_t *self);
 
-// Remembers the fresh echoes of sonars not DISABLED and no suspects; forgets those of a sonar. Marks what the
-// body met, which stays; or a place in the course frame where something is, however it was found.
+// Remembers the fresh echoes of sonars not DISABLED and no suspects; forgets those of a sonar that is out,
+// where it has told what was not there. Marks what the body met, which stays; or a place in the course frame
+// where something is, however it was found.
 void argus_echoes_see(argus_echoes_t *self, const argus_knowledge_t *knowledge, uint32_t now_ms);
-void argus_echoes_forget(argus_echoes_t *self, int sonar);
+void argus_echoes_forget(argus_echoes_t *self, int sonar, bool lied);
 void argus_echoes_met(argus_echoes_t *self, const argus_knowledge_t *knowledge, argus_contact_t how);
 void argus_echoes_touched(argus_echoes_t *self, argus_point_t at, uint32_t now_ms);
 
@@ -64,10 +65,13 @@ bool argus_echoes_have_seen(const argus_echoes_t *self, const argus_knowledge_t 
 
 // Whether this one was seen more than once, lately and near the robot; where, robot frame. 0 <= index <
 // count. `beside`, what a turn is asked of: also one of the last minute that no sonar has heard past since.
-// What stands between two cones does not go away because none looks there.
+// What stands between two cones does not go away because none looks there. `stands`, what the body itself is
+// asked of: such a one wherever it lies, as the sonar that looks there may be out.
 bool argus_echoes_near(const argus_echoes_t *self, const argus_knowledge_t *knowledge, int index,
                        argus_point_t *at);
 bool argus_echoes_beside(const argus_echoes_t *self, const argus_knowledge_t *knowledge, int index,
+                         argus_point_t *at);
+bool argus_echoes_stands(const argus_echoes_t *self, const argus_knowledge_t *knowledge, int index,
                          argus_point_t *at);
 
 // The distance of what would be nearest to the robot's centre, were it `back_mm` farther back. What was seen

@@ -61,7 +61,7 @@ typedef struct {
     uint16_t x_raw;
     uint16_t y_raw;
     argus_mask_t fresh;   // sonars listed in the last SIP
-    argus_mask_t heard;   // sonars that have heard an echo since the session opened, or the readings began anew
+    argus_mask_t heard;   // sonars that have heard an echo since the readings began, or began anew
     argus_mask_t listed;  // sonars that this robot has ever listed
     uint8_t strange_sips; // in a row with sonars that such a robot has not got
     argus_pose_t pose;

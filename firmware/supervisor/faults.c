@@ -86,6 +86,11 @@ bool argus_keep_plan(const argus_t *const self, argus_plan_t *const plan, argus_
     return plan->complete;
 }
 
+// One that hears nothing has not told what was not there.
+static bool has_lied(const argus_fault_kind_t kind) {
+    return kind != ARGUS_KIND_OFF && kind != ARGUS_KIND_SILENT && kind != ARGUS_KIND_INTERMITTENT;
+}
+
 void argus_disable(argus_t *const self, const int sonar, const argus_fault_kind_t kind) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     ARGUS_ASSERT(kind != ARGUS_KIND_NONE);
@@ -93,7 +98,7 @@ void argus_disable(argus_t *const self, const int sonar, const argus_fault_kind_
         argus_health_set(&self->knowledge, sonar, ARGUS_CHANGE_DISABLED, kind, (int32_t)kind, self->now_ms);
     argus_evidence_agree_anew(&self->evidence, sonar); // what brings it back comes after this
     argus_evidence_retract(&self->evidence, sonar);
-    argus_echoes_forget(&self->echoes, sonar);
+    argus_echoes_forget(&self->echoes, sonar, has_lied(kind));
     argus_rays_forget(&self->rays, sonar);
     argus_journey_restart(&self->travel);
     argus_replan(self);

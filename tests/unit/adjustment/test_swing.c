@@ -43,6 +43,30 @@ void test_a_corner_sweeps_one_side(void) {
     TEST_ASSERT_FALSE(argus_swing_meets(&k, NULL, -500)); // where nothing is remembered
 }
 
+// Behind the rear end, where no sonar may be left to look: it stands there until one hears past it, or a
+// minute is over.
+void test_what_stands_does_not_go_with_the_sonar_that_heard_it(void) {
+    put(-k.robot->rear_mm - 20, 100);
+    e.at[0].stands = true;
+    k.sip_ms += 30000;
+    TEST_ASSERT_TRUE(meets(1800));
+    TEST_ASSERT_FALSE(meets(-500));
+    e.at[0].stands = false;
+    TEST_ASSERT_FALSE(meets(1800));
+    e.at[0].stands = true;
+    k.sip_ms += ARGUS_FORGET_MS;
+    TEST_ASSERT_FALSE(meets(1800));
+}
+
+// No second time: what was touched is asked of each turn, whoever orders it.
+void test_what_was_touched_is_met(void) {
+    const argus_point_t at = {-k.robot->rear_mm + 60, argus_robot_half_width_mm(k.robot) + 5};
+    argus_touches_add(&e.touches, at);
+    TEST_ASSERT_TRUE(meets(-500));
+    TEST_ASSERT_FALSE(meets(500));
+    TEST_ASSERT_FALSE(argus_swing_meets(&k, NULL, -500)); // where nothing is remembered
+}
+
 // A turn is asked all along: by 90 degrees the corner has passed the thing.
 void test_what_lies_on_the_way_of_a_turn_is_met(void) {
     put(-k.robot->rear_mm + 60, argus_robot_half_width_mm(k.robot) + 20);

@@ -349,12 +349,23 @@ static double gap_turned_mm(double by_deg) {
     return nearest;
 }
 
-static void play_client(uint32_t seed, int bearing_deg, double off_mm) {
+// An array of eight falls out, and no other looks where it looked.
+static void lose_array(int first, robot_fault_t fault) {
+    for (int i = first; i < first + 8; i++) {
+        robot.fault[i] = fault;
+    }
+    client_run(&client, 8000, true);
+}
+
+static void play_client(uint32_t seed, int bearing_deg, double off_mm, int lost) {
     char text[120];
     begin_free();
     robot.seed = seed * 2654435761u + 1;
     stand_before_wall(bearing_deg, off_mm);
     client_run(&client, 7000, true); // what was remembered of the room is gone
+    if (lost >= 0) {
+        lose_array(lost, seed % 2 == 0 ? ROBOT_OFF : ROBOT_SILENT);
+    }
     const double from = robot_heading_deg(&robot);
     const bool near_left = gap_turned_mm(6) < 0; // it touches within a few degrees, whichever way it goes
     const bool near_right = gap_turned_mm(-6) < 0;
@@ -372,12 +383,19 @@ static void play_client(uint32_t seed, int bearing_deg, double off_mm) {
 
 void test_a_random_client_before_a_wall_at_any_bearing(void) {
     for (uint32_t seed = 1; seed <= 24; seed++) {
-        play_client(seed, (int)(seed * 47 % 360) - 180, 20 + seed * 37 % 90);
+        play_client(seed, (int)(seed * 47 % 360) - 180, 20 + seed * 37 % 90, -1);
+    }
+}
+
+void test_a_random_client_before_a_wall_that_only_a_dead_array_has_heard(void) {
+    for (uint32_t seed = 500; seed < 512; seed++) {
+        play_client(seed, (int)(seed * 47 % 120) - 60, 20 + seed * 37 % 90, 0);
+        play_client(seed, (int)(seed * 47 % 120) + 120, 20 + seed * 37 % 90, 8);
     }
 }
 
 void test_many_random_clients_before_walls(void) { // soak
     for (uint32_t seed = 100; seed < 400; seed++) {
-        play_client(seed, (int)(seed * 47 % 360) - 180, 10 + seed * 37 % 150);
+        play_client(seed, (int)(seed * 47 % 360) - 180, 10 + seed * 37 % 150, -1);
     }
 }

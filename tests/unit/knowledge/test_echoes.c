@@ -200,11 +200,19 @@ void test_a_convicted_sonars_echoes_are_forgotten(void) {
     see_echo(&e, &k, 3, 500);
     see_echo(&e, &k, 6, 900);
     see_echo(&e, &k, 2, 1300);
-    argus_echoes_forget(&e, 6);
+    argus_echoes_forget(&e, 6, true);
     TEST_ASSERT_EQUAL(2, e.count);
     for (int i = 0; i < e.count; i++) {
         TEST_ASSERT_TRUE(e.at[i].sonar != 6);
     }
+}
+
+// One that hears nothing any more has told the truth until then.
+void test_what_a_deaf_sonar_heard_stays(void) {
+    see_echo(&e, &k, 3, 500);
+    see_echo(&e, &k, 6, 900);
+    argus_echoes_forget(&e, 6, false);
+    TEST_ASSERT_EQUAL(2, e.count);
 }
 
 void test_memory_is_bounded_and_drops_the_oldest(void) {
@@ -267,7 +275,7 @@ void test_what_was_touched_stays(void) {
     argus_echoes_met(&e, &k, ARGUS_CONTACT_AHEAD);
     TEST_ASSERT_EQUAL(3, e.touches.count);
     const argus_cell_t there = argus_grid_cell(e.touches.at[1]);
-    argus_echoes_forget(&e, 3);
+    argus_echoes_forget(&e, 3, true);
     TEST_ASSERT_TRUE(argus_grid_is_occupied(&e.grid, there));
     for (int i = 0; i < 4; i++) {
         argus_grid_fade(&e.grid);
