@@ -6,6 +6,21 @@
 
 #define GROUP 4 // sonars in a frame of readings
 #define ARRAY 8 // and in a frame of health
+#define SONARS_LEAST 16
+
+typedef enum { HEARTBEAT, HEALTH, READINGS, PLAN } content_t;
+
+// The frames that repeat, in the order of their ids: what they hold, and of which sonars from one on.
+typedef struct {
+    content_t content;
+    uint8_t first;
+} slot_t;
+
+static const slot_t slots[] = {{HEARTBEAT, 0}, {HEALTH, 0},    {HEALTH, 8},    {READINGS, 0}, {READINGS, 4},
+                               {READINGS, 8},  {READINGS, 12}, {PLAN, 0},      {HEALTH, 16},  {HEALTH, 24},
+                               {READINGS, 16}, {READINGS, 20}, {READINGS, 24}, {READINGS, 28}};
+_Static_assert(sizeof slots / sizeof slots[0] == HAL_TELEMETRY_FRAMES + HAL_TELEMETRY_UPPER,
+               "each frame has its slot");
 
 // Nonces
 // -----------------------------------------------------------------------------------------------------
@@ -348,41 +363,46 @@ static bool has_news(const hal_telemetry_t *self, const argus_status_t *status, 
 }
 
 // Fills the frame of a slot as it would be now, and says how long after the last one it is due.
-static uint32_t fill(hal_telemetry_t *self, const argus_status_t *status, int slot, uint8_t *data) {
-    const uint8_t *const last = self->sent[slot].data;
-    if (slot == HAL_TELEMETRY_HEALTH_FRONT || slot == HAL_TELEMETRY_HEALTH_REAR) {
-        fill_health(self, status, slot == HAL_TELEMETRY_HEALTH_FRONT ? 0 : ARRAY, data);
-    } else if (slot == HAL_TELEMETRY_PLAN) {
+static uint32_t fill(hal_telemetry_t *self, const argus_status_t *status, unsigned slot, uint8_t *data) {
+    const int first = slots[slot].first;
+    switch (slots[slot].content) {
+    case HEALTH:
+        fill_health(self, status, first, data);
+        break;
+    case PLAN:
         fill_plan(status, self->plan_roll, data);
-    } else if (slot >= HAL_TELEMETRY_READINGS) {
-        const int first = (slot - HAL_TELEMETRY_READINGS) * GROUP;
+        break;
+    case READINGS:
         fill_readings(self, status, first, data);
         if (!has_news(self, status, first)) {
             return HAL_TELEMETRY_PERIOD_MS;
         }
         return status->lists_all ? HAL_TELEMETRY_ALL_MS : HAL_TELEMETRY_READING_MS;
-    } else {
+    case HEARTBEAT:
+    default:
         return HAL_TELEMETRY_PERIOD_MS; // the heartbeat is filled when it goes, for its nonce
     }
-    return memcmp(data, last, HAL_DBC_LENGTH) != 0 ? HAL_TELEMETRY_CHANGE_MS : HAL_TELEMETRY_PERIOD_MS;
+    return memcmp(data, self->sent[slot].data, HAL_DBC_LENGTH) != 0 ? HAL_TELEMETRY_CHANGE_MS
+                                                                    : HAL_TELEMETRY_PERIOD_MS;
 }
 
-static void sent(hal_telemetry_t *self, const argus_status_t *status, int slot, uint32_t now_ms,
+static void sent(hal_telemetry_t *self, const argus_status_t *status, unsigned slot, uint32_t now_ms,
                  hal_telemetry_frame_t *frame) {
     hal_telemetry_sent_t *const s = &self->sent[slot];
-    if (slot == HAL_TELEMETRY_HEARTBEAT) {
+    const content_t content = slots[slot].content;
+    if (content == HEARTBEAT) {
         fill_heartbeat(self, status, state_of(status), next_nonce(self, now_ms), frame->data);
         self->roll++;
-    } else if (slot == HAL_TELEMETRY_PLAN && s->ever && memcmp(frame->data, s->data, HAL_DBC_LENGTH) != 0) {
+    } else if (content == PLAN && s->ever && memcmp(frame->data, s->data, HAL_DBC_LENGTH) != 0) {
         self->plan_roll++;
         fill_plan(status, self->plan_roll, frame->data);
-    } else if (slot >= HAL_TELEMETRY_READINGS && slot < HAL_TELEMETRY_PLAN) {
-        const int first = (slot - HAL_TELEMETRY_READINGS) * GROUP;
+    } else if (content == READINGS) {
+        const int first = slots[slot].first;
         for (int i = first; i < end_of_group(first); i++) {
             self->readings[i] = status->readings[i];
         }
     }
-    frame->id = (uint16_t)(HAL_DBC_HEARTBEAT_ID + self->robot * HAL_DBC_STEP_TELEMETRY + (unsigned)slot);
+    frame->id = (uint16_t)(HAL_DBC_HEARTBEAT_ID + self->robot * HAL_DBC_STEP_TELEMETRY + slot);
     frame->length = HAL_DBC_LENGTH;
     memcpy(s->data, frame->data, HAL_DBC_LENGTH);
     // What repeats keeps its beat, unless it comes much too late.
@@ -390,6 +410,11 @@ static void sent(hal_telemetry_t *self, const argus_status_t *status, int slot, 
     s->sent_ms = s->ever && late_ms < HAL_TELEMETRY_READING_MS ? s->sent_ms + s->wait_ms : now_ms;
     s->wait_ms = HAL_TELEMETRY_PERIOD_MS;
     s->ever = true;
+}
+
+// Of sonars that the robot has not there is no frame.
+static bool is_there(const hal_telemetry_t *self, unsigned slot) {
+    return slots[slot].first < self->sonars;
 }
 
 static void tick(hal_telemetry_t *self, uint32_t now_ms) {
@@ -404,8 +429,12 @@ bool hal_telemetry_next(hal_telemetry_t *self, const argus_status_t *status, uin
     if (take_edge(self, now_ms, frame)) {
         return true;
     }
-    for (int slot = 0; slot < HAL_TELEMETRY_FRAMES; slot++) {
+    self->sonars = status->sonars > SONARS_LEAST ? status->sonars : SONARS_LEAST;
+    for (unsigned slot = 0; slot < HAL_TELEMETRY_SLOTS; slot++) {
         hal_telemetry_sent_t *const s = &self->sent[slot];
+        if (!is_there(self, slot)) {
+            continue;
+        }
         s->wait_ms = fill(self, status, slot, frame->data);
         if (!s->ever || now_ms - s->sent_ms >= s->wait_ms) {
             sent(self, status, slot, now_ms, frame);
@@ -418,7 +447,7 @@ bool hal_telemetry_next(hal_telemetry_t *self, const argus_status_t *status, uin
 void hal_telemetry_farewell(hal_telemetry_t *self, const argus_status_t *status, uint32_t now_ms,
                             hal_telemetry_frame_t *frame) {
     tick(self, now_ms);
-    sent(self, status, HAL_TELEMETRY_HEARTBEAT, now_ms, frame);
+    sent(self, status, HEARTBEAT, now_ms, frame);
     self->roll--; // filled anew, but the same heartbeat
     fill_heartbeat(self, status, HAL_DBC_STATE_CLOSED, self->nonce[self->newest].value, frame->data);
     self->roll++;
@@ -431,8 +460,11 @@ static uint32_t sooner(uint32_t due_ms, uint32_t wait_ms, uint32_t passed_ms) {
 
 uint32_t hal_telemetry_due_ms(const hal_telemetry_t *self, uint32_t now_ms) {
     uint32_t due_ms = HAL_TELEMETRY_PERIOD_MS;
-    for (int slot = 0; slot < HAL_TELEMETRY_FRAMES; slot++) {
+    for (unsigned slot = 0; slot < HAL_TELEMETRY_SLOTS; slot++) {
         const hal_telemetry_sent_t *const s = &self->sent[slot];
+        if (!is_there(self, slot)) {
+            continue;
+        }
         due_ms = sooner(due_ms, s->ever ? s->wait_ms : 0, now_ms - s->sent_ms);
     }
     if (self->queued > 0) {
@@ -445,6 +477,7 @@ void hal_telemetry_init(hal_telemetry_t *self, uint8_t robot, uint32_t stale_ms,
                         uint32_t now_ms) {
     memset(self, 0, sizeof *self);
     self->robot = robot;
+    self->sonars = SONARS_LEAST;
     self->stale_ms = stale_ms;
     self->second_ms = now_ms;
     self->edge_ms = now_ms;

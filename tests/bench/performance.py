@@ -48,6 +48,9 @@ JOURNEYS: Final = tuple(
 )
 _PROFILES: Final = ("argus", "paper")
 _SIPS: Final = (TYPE["SIP_STATIONARY"], TYPE["SIP_MOVING"])
+ROOT: Final = Path(__file__).resolve().parents[2]
+FLEETS: Final = ((100, 300), (1_000, 60), (10_000, 20))
+"""Managers in one process, and for how long, s."""
 IRSIM: Final = """
 import math, sys, time, irsim, yaml
 lidar = {"name": "lidar2d", "range_min": 0.1, "range_max": 5.0, "angle_range": 2 * math.pi, "number": 16}
@@ -235,7 +238,8 @@ def logs(rounds: int, packets: Sequence[Packet], folder: Path) -> Iterator[Row]:
     decode()
     yield Row("`convert` to MCAP over `decode --json`", ratios(rounds, convert, decode), "ratio")
     size = sum(len(packet.data) for packet in packets)
-    yield Row("size of the MCAP over the packets", (mcap.stat().st_size / size,), "ratio")
+    yield Row("size of the MCAP over the log", (mcap.stat().st_size / jsonl.stat().st_size,), "ratio")
+    yield Row("size of the MCAP over the packets alone", (mcap.stat().st_size / size,), "ratio")
     yield Row("`stats` over `decode --json`", ratios(rounds, quiet("stats", jsonl), decode), "ratio")
     yield Row(
         "`faults` over the core alone", ratios(rounds, quiet("faults", jsonl), lambda: _fed(packets)), "ratio"
@@ -308,6 +312,21 @@ def _spent_us(packets: Sequence[Packet], profile: str) -> float:
     return 1e6 * cpu_s(play)
 
 
+def fleet(rounds: int) -> Iterator[Row]:
+    """What many managers in one process take (examples/fleet)."""
+    program_path = ROOT / "build/release/fleet"
+    for robots, seconds in FLEETS:
+        told = [
+            subprocess.run(
+                [program_path, str(robots), str(seconds)], check=True, capture_output=True, text=True
+            ).stdout
+            for _ in range(rounds)
+        ]
+        cores = tuple(float(text.split(" cores")[0].split()[-1]) * 1000 / robots for text in told)
+        memory = told[0].split(" MB")[0].split()[-1]
+        yield Row(f"1,000 robots at 10 Hz, of {robots:,} in one process ({memory} MB)", cores, "cores")
+
+
 # ---- all --------------------------------------------------------------------------------------------------------
 
 
@@ -318,6 +337,7 @@ def measure(rounds: int, irsim: str | None, seconds: float) -> Iterator[Row]:
     with tempfile.TemporaryDirectory() as folder:
         yield from logs(rounds, packets, Path(folder))
     yield from core(rounds, packets)
+    yield from fleet(rounds)
 
 
 def summary(rows: Sequence[Row], rounds: int) -> dict[str, Any]:

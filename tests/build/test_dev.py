@@ -107,7 +107,14 @@ def test_the_quick_stages_are_some_of_all() -> None:
     quick, everything = stages_of("test", "--quick"), stages_of("test")
     assert set(quick) < set(everything)
     assert not {"hil", "can", "soak", "wide"} & set(quick)
-    assert set(stages_of("soak")) - set(everything) == {"wide", "fuzz", "mcdc", "misra", "valgrind", "reproduce"}
+    assert set(stages_of("soak")) - set(everything) == {
+        "wide",
+        "fuzz",
+        "mcdc",
+        "misra",
+        "valgrind",
+        "reproduce",
+    }
 
 
 @pytest.fixture
@@ -117,7 +124,18 @@ def commands(monkeypatch: pytest.MonkeyPatch) -> dict[str, list[list[str]]]:
     for module in (cmake, testing):
         monkeypatch.setattr(module, "build", lambda preset, run: None)
     for stage in {*testing.TEST_STAGES, *testing.SOAK_STAGES}:
-        if stage.name not in {"hil", "can", "ros", "packages", "monitor", "docs", "coverage", "mcdc", "misra", "reproduce"}:
+        if stage.name not in {
+            "hil",
+            "can",
+            "ros",
+            "packages",
+            "monitor",
+            "docs",
+            "coverage",
+            "mcdc",
+            "misra",
+            "reproduce",
+        }:
             runs: list[list[str]] = found.setdefault(stage.name, [])
             stage.action(lambda command, runs=runs: runs.append([str(word) for word in command]))  # type: ignore[misc]
     return found

@@ -14,6 +14,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLE = ROOT / "examples/embed"
+FLEET = ROOT / "examples/fleet"
 BUILD = ROOT / "build/release"
 EXPECTED = {
     "include/argus/argus.h",
@@ -108,6 +109,21 @@ def test_the_example_is_built_against_it_and_runs(prefix: Path, tmp_path: Path) 
     assert any(re.search(r"SONAR_SILENT +sonar  3 ", line) for line in lines)
     assert any("SESSION_CLOSED" in line for line in lines)
     assert re.fullmatch(r"\d+ SIPs from Robot; sonar 3 is (DISABLED|STALE)", lines[-1])
+
+
+def test_a_fleet_is_built_against_it_and_no_manager_disturbs_another(prefix: Path, tmp_path: Path) -> None:
+    source = shutil.copytree(FLEET, tmp_path / "fleet")
+    run("cmake", "-S", source, "-B", tmp_path / "build", f"-DCMAKE_PREFIX_PATH={prefix}")
+    run("cmake", "--build", tmp_path / "build")
+    told = run(tmp_path / "build/fleet", "60", "60")
+    assert told.endswith("6 of 6 dead sonars named, and 0 healthy ones\n"), told
+
+
+@pytest.mark.parametrize("words", [("0",), ("x",), ("100001",), ("1", "0"), ("1", "2", "3")])
+def test_a_fleet_refuses_what_it_cannot_be(words: tuple[str, ...]) -> None:
+    done = subprocess.run([BUILD / "fleet", *words], capture_output=True, text=True, check=False, timeout=60)
+    assert done.returncode == 2
+    assert done.stderr.startswith("usage: fleet [ROBOTS [SECONDS]]"), done.stderr
 
 
 def test_pkg_config_and_the_shared_library(prefix: Path, tmp_path: Path) -> None:

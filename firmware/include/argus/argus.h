@@ -854,7 +854,7 @@ void argus_link_up(argus_t *self, uint32_t now_ms);
 void argus_link_lost(argus_t *self, uint32_t now_ms);
 
 // Takes any number of received bytes, none too. A STOP that they call for is ready in argus_transmit() when
-// this returns. Cost: one pass over the bytes, and for each SIP in them the diagnosis: at most some 660,000
+// this returns. Cost: one pass over the bytes, and for each SIP in them the diagnosis: at most some 490,000
 // instructions of a Cortex-M4 (docs/flash.md).
 void argus_receive(argus_t *self, uint32_t now_ms, const uint8_t *bytes, size_t count);
 

@@ -18,18 +18,9 @@
 #define HAL_TELEMETRY_NONCE_MS 2000u  // how long a nonce is good
 #define HAL_TELEMETRY_NONCES 3u       // heartbeats in that time
 
-// Frames that repeat, in the order of their ids. Their number is that of the id.
-typedef enum {
-    HAL_TELEMETRY_HEARTBEAT,
-    HAL_TELEMETRY_HEALTH_FRONT,
-    HAL_TELEMETRY_HEALTH_REAR,
-    HAL_TELEMETRY_READINGS, // sonars 0..3
-    HAL_TELEMETRY_READINGS_04,
-    HAL_TELEMETRY_READINGS_08,
-    HAL_TELEMETRY_READINGS_12,
-    HAL_TELEMETRY_PLAN,
-    HAL_TELEMETRY_FRAMES
-} hal_telemetry_slot_t;
+#define HAL_TELEMETRY_FRAMES 8u // that repeat, of a robot with up to 16 sonars
+#define HAL_TELEMETRY_UPPER 6u  // more of one that has 32
+#define HAL_TELEMETRY_SLOTS (HAL_TELEMETRY_FRAMES + (ARGUS_SONARS > 16 ? HAL_TELEMETRY_UPPER : 0u))
 
 typedef struct {
     uint16_t id;
@@ -74,11 +65,12 @@ typedef struct {
 
 typedef struct {
     uint8_t robot;
+    uint8_t sonars; // that have frames: 16 at least
     uint32_t stale_ms;
     uint32_t second_ms; // uptime is counted in whole seconds, over the wrap of the clock
     uint32_t uptime_s;
-    hal_telemetry_sent_t sent[HAL_TELEMETRY_FRAMES];
-    uint32_t readings[ARGUS_SONARS]; // of each sonar, as of its last frame
+    hal_telemetry_sent_t sent[HAL_TELEMETRY_SLOTS]; // by how far its id lies from the first
+    uint32_t readings[ARGUS_SONARS];                // of each sonar, as of its last frame
     uint8_t roll;
     uint8_t plan_roll;
     uint8_t edge_roll;

@@ -153,6 +153,54 @@ void test_everything_is_said_at_once_and_each_second(void) {
     }
 }
 
+// As many as there are sonars, each once; no frame is owed for those that are not there.
+void test_a_robot_with_more_sonars_has_frames_for_them(void) {
+    static const struct {
+        uint8_t sonars;
+        unsigned health;
+        unsigned readings;
+    } rows[] = {{8, 2, 4}, {16, 2, 4}, {17, 3, 5}, {24, 3, 6}, {28, 4, 7}, {32, 4, 8}};
+    for (size_t row = 0; row < sizeof rows / sizeof rows[0] && rows[row].sonars <= ARGUS_SONARS; row++) {
+        hal_telemetry_frame_t frame;
+        argus_status_t status = *seen();
+        unsigned sent = 0;
+        status.sonars = rows[row].sonars;
+        hal_telemetry_init(&telemetry, 1, 1500, 42, 0);
+        while (hal_telemetry_next(&telemetry, &status, 0, &frame)) {
+            TEST_ASSERT_EQUAL_UINT(0, sent >> (frame.id - 0x510) & 1u);
+            sent |= 1u << (frame.id - 0x510);
+        }
+        const unsigned health = (1u << 1 | 1u << 2) | (rows[row].health > 2 ? 1u << 8 : 0u) |
+                                (rows[row].health > 3 ? 1u << 9 : 0u);
+        const unsigned readings = 0xFu << 3 | ((1u << (rows[row].readings - 4)) - 1u) << 10;
+        TEST_ASSERT_EQUAL_HEX(1u | health | readings | 1u << 7, sent);
+        TEST_ASSERT_GREATER_THAN_UINT32(0, hal_telemetry_due_ms(&telemetry, 0));
+    }
+}
+
+void test_the_last_sonar_is_in_the_last_frames(void) {
+#if ARGUS_SONARS >= 32
+    hal_telemetry_frame_t frame;
+    argus_status_t status = *seen();
+    status.sonars = 32;
+    status.health[31] = ARGUS_DISABLED;
+    status.kind[31] = ARGUS_KIND_STUCK;
+    status.reading_mm[30] = 1234;
+    status.age_ms[30] = 0;
+    status.readings[30] = 1;
+    while (hal_telemetry_next(&telemetry, &status, now_ms(), &frame)) {
+        if (frame.id == 0x509) {
+            TEST_ASSERT_EQUAL_HEX8(ARGUS_DISABLED | ARGUS_KIND_STUCK << 3, frame.data[7]);
+        } else if (frame.id == 0x50D) {
+            TEST_ASSERT_EQUAL_UINT(1234, (frame.data[4] | frame.data[5] << 8) & 0x1FFF);
+            TEST_ASSERT_EQUAL_UINT(HAL_DBC_VALIDITY_FRESH, frame.data[5] >> 5);
+        }
+        count++;
+    }
+    TEST_ASSERT_EQUAL_INT(HAL_TELEMETRY_SLOTS, count);
+#endif
+}
+
 void test_every_reading_is_on_the_bus_and_none_too_often(void) {
     TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
     collect();
