@@ -150,26 +150,22 @@ static size_t append(argus_parser_t *self, const uint8_t *bytes, size_t count) {
     return taken;
 }
 
-// Bytes of a packet that is under way and in no doubt, as they come one by one.
-static void append_ahead(argus_parser_t *self, uint32_t now_ms, const uint8_t *bytes, size_t count) {
+// Bytes of a packet that is under way and in no doubt.
+static size_t append_ahead(argus_parser_t *self, uint32_t now_ms, const uint8_t *bytes, size_t count) {
     ARGUS_ASSERT(self->length >= HEADER_BYTES && end_of(self) + count <= ARGUS_PARSER_BYTES);
-    if (count == 1) { // most often, and then a call costs more than all else
-        self->held[end_of(self)] = *bytes;
-    } else {
-        memcpy(self->held + end_of(self), bytes, count);
-    }
+    memcpy(self->held + end_of(self), bytes, count);
     self->length = (uint16_t)(self->length + count);
     self->ahead = (uint8_t)(self->ahead - count);
     self->last_byte_ms = now_ms;
+    return count;
 }
 
-size_t argus_parser_push(argus_parser_t *self, uint32_t now_ms, const uint8_t *bytes, size_t count) {
+size_t argus_parser_take(argus_parser_t *self, uint32_t now_ms, const uint8_t *bytes, size_t count) {
     if (count == 0) {
         return 0;
     }
-    if (count <= self->ahead && !is_quiet(self, now_ms)) {
-        append_ahead(self, now_ms, bytes, count);
-        return count;
+    if (count <= self->ahead && argus_parser_waits(self, now_ms)) {
+        return append_ahead(self, now_ms, bytes, count);
     }
     self->ahead = 0;
     note_silence(self, now_ms);
@@ -295,8 +291,8 @@ static size_t undecided(const argus_parser_t *self) {
     return least(last - held, UINT8_MAX);
 }
 
-bool argus_parser_next(argus_parser_t *self, uint32_t now_ms, argus_packet_t *packet) {
-    if (self->ahead > 0 && !is_quiet(self, now_ms)) {
+bool argus_parser_decide(argus_parser_t *self, uint32_t now_ms, argus_packet_t *packet) {
+    if (argus_parser_waits(self, now_ms)) {
         return false;
     }
     self->ahead = 0;

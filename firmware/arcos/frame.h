@@ -7,7 +7,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "arcos/arithmetic.h"
 #include "arcos/gen_arcos.h"
+#include "argus/argus.h"
 
 // Largest packet on the wire: header, COUNT and 255 bytes.
 #define ARGUS_FRAME_TOTAL_MAX (ARCOS_FRAME_COUNT_MAX + 3)
@@ -59,12 +61,36 @@ void argus_parser_init(argus_parser_t *self);
 // Drops what is held; the counters go on.
 void argus_parser_flush(argus_parser_t *self);
 
+// Whether bytes of a packet are under way that bring nothing to decide yet.
+static inline bool argus_parser_waits(const argus_parser_t *const self, const uint32_t now_ms) {
+    return self->ahead > 0 &&
+           argus_elapsed_ms(now_ms, self->last_byte_ms) < (uint32_t)ARCOS_FRAME_RESYNC_QUIET_MS;
+}
+
+// The same as the two functions below, for any bytes and at any time.
+size_t argus_parser_take(argus_parser_t *self, uint32_t now_ms, const uint8_t *bytes, size_t count);
+bool argus_parser_decide(argus_parser_t *self, uint32_t now_ms, argus_packet_t *packet);
+
 // Offers bytes. It takes as many as it can use before a packet is complete, and returns how many. That is 0
 // when a packet waits to be fetched first. Loop: push, then fetch with argus_parser_next() until false, until
-// all bytes are taken.
-size_t argus_parser_push(argus_parser_t *self, uint32_t now_ms, const uint8_t *bytes, size_t count);
+// all bytes are taken. A single byte, as an interrupt brings it, costs a few instructions.
+static inline size_t argus_parser_push(argus_parser_t *const self, const uint32_t now_ms,
+                                       const uint8_t *const bytes, const size_t count) {
+    if (count != 1 || !argus_parser_waits(self, now_ms)) {
+        return argus_parser_take(self, now_ms, bytes, count);
+    }
+    ARGUS_ASSERT((size_t)self->first + self->length < ARGUS_PARSER_BYTES);
+    self->held[self->first + self->length] = *bytes;
+    self->length++;
+    self->ahead--;
+    self->last_byte_ms = now_ms;
+    return 1;
+}
 
 // The next complete packet, or false. Also applies the time rules: call it from the periodic process too.
-bool argus_parser_next(argus_parser_t *self, uint32_t now_ms, argus_packet_t *packet);
+static inline bool argus_parser_next(argus_parser_t *const self, const uint32_t now_ms,
+                                     argus_packet_t *const packet) {
+    return !argus_parser_waits(self, now_ms) && argus_parser_decide(self, now_ms, packet);
+}
 
 #endif
