@@ -76,7 +76,8 @@ static double free_mm(double x, double y, double bearing, double half_mm) {
 static pose_t pose_at(unsigned number, uint32_t now_ms) {
     const uint32_t t_ms = now_ms + number * 37; // each robot is somewhere else on it
     const uint32_t in_ms = t_ms % (SIDE_MS + TURN_MS);
-    const double corner = t_ms / (SIDE_MS + TURN_MS) * 90 * rad;
+    const uint32_t corners = t_ms / (SIDE_MS + TURN_MS);
+    const double corner = corners * 90.0 * rad;
     const bool turns = in_ms >= SIDE_MS;
     const double along = (turns ? SIDE_MS : in_ms) * SPEED_MM_S / 1000.0 - HALF_SIDE_MM;
     const double turned = turns ? (in_ms - SIDE_MS) * 90.0 * rad / TURN_MS : 0;
