@@ -40,7 +40,8 @@ static void fill(table_t *const table, const argus_turns_t *const turns, const s
         table->least[set] = NONE;
         for (int k = span->from; k < span->to; k++) {
             const uint16_t rest = table->least[set & ~(unsigned)turns->sees[k]];
-            const bool helps = (turns->sees[k] & set) != 0 && rest != NONE;
+            const bool helps = (turns->sees[k] & set) != 0;
+            ARGUS_ASSERT(!helps || rest != NONE); // the span sees all, so each part of all
             const uint16_t sum = helps ? (uint16_t)(rest + price(turns, k)) : NONE;
             table->least[set] = sum < table->least[set] ? sum : table->least[set];
             table->steps++;
@@ -99,8 +100,7 @@ static uint32_t stops_of(const table_t *const table, const argus_turns_t *const 
     unsigned set = argus_turns_open(turns);
     for (int k = span->from; k < span->to; k++) { // each is needed once, in whatever order
         const unsigned rest = set & ~(unsigned)turns->sees[k];
-        if (rest != set && table->least[rest] != NONE &&
-            table->least[set] == table->least[rest] + price(turns, k)) {
+        if (rest != set && table->least[set] == table->least[rest] + price(turns, k)) {
             stops |= (uint32_t)1 << k;
             set = rest;
         }

@@ -84,7 +84,8 @@ static void tell_free(const argus_grant_t *const grant, argus_given_t *const giv
 // The way --------------------------------------------------------------------------------------------------
 
 static void set_speed(const argus_grant_t *const grant, argus_hold_client_t *const self, const int32_t mm_s) {
-    if (mm_s > 0 && mm_s != self->given.setv_mm_s && argus_outbox_int(grant->out, ARCOS_CMD_SETV, mm_s)) {
+    ARGUS_ASSERT(mm_s > 0);
+    if (mm_s != self->given.setv_mm_s && argus_outbox_int(grant->out, ARCOS_CMD_SETV, mm_s)) {
         self->given.setv_mm_s = mm_s;
     }
 }
@@ -530,7 +531,7 @@ static int32_t given_mm_s(const argus_given_t *const given, const int32_t setv_m
 static int32_t given_deg_s(const argus_t *const core, const argus_hold_client_t *const self) {
     const argus_given_t *const given = &self->given;
     const int32_t units = self->wish.paired ? given->right - given->left : 0;
-    if (given->has_head || given->weave.side != 0 || core->knowledge.robot == NULL) {
+    if (given->has_head || given->weave.side != 0) {
         return ARGUS_CLIENT_TURN_DEG_S;
     }
     if (units != 0) {

@@ -36,7 +36,10 @@ bool argus_send_client(argus_port_t *const port, const uint8_t *const data, cons
 bool argus_send_robot(const argus_grant_t *const grant, const argus_packet_t *const packet) {
     argus_outbox_t *const out = grant->out;
     const size_t total = (size_t)ARCOS_FRAME_OVERHEAD + packet->count + 2;
-    return out->length + total <= ROOM_BYTES && argus_outbox_packet(out, packet->data, packet->count);
+    if (out->length + total > ROOM_BYTES) {
+        return false;
+    }
+    return argus_outbox_packet(out, packet->data, packet->count);
 }
 
 void argus_send_note(argus_port_settings_t *const settings, const uint8_t command, const int32_t argument) {

@@ -106,7 +106,7 @@ int32_t argus_config_speed_mm_s(const argus_config_t *config, const argus_robot_
 static int32_t sqrt_up(int32_t value) {
     ARGUS_ASSERT(value >= 0);
     const uint32_t root = argus_sqrt((uint32_t)value);
-    return (int32_t)(root * root < (uint32_t)value ? root + 1 : root);
+    return (int32_t)(root + (root * root < (uint32_t)value));
 }
 
 // What one sonar hears of the line that the front of the body sweeps up to: from .. to across it. Half

@@ -72,7 +72,8 @@ static void grow(const uint64_t *const from, uint64_t *const to, const int32_t r
     memset(to, 0, CELLS * sizeof *to);
     for (int dy = -most; dy <= most; dy++) {
         const int by = argus_wave_reach(radius_mm, dy);
-        for (int y = argus_max(0, -dy); y < CELLS && y + dy < CELLS && by >= 0; y++) {
+        ARGUS_ASSERT(by >= 0); // a row that is within the radius
+        for (int y = argus_max(0, -dy); y < CELLS && y + dy < CELLS; y++) {
             to[y] |= from[y + dy] != 0 ? widened(from[y + dy], by) : 0;
         }
     }

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -41,6 +42,25 @@ def test_each_python_package_of_the_wheel_is_pinned_and_has_a_licence() -> None:
         assert part.version == pinned()[part.name]
         assert part.licence, f"{part.name}: its metadata tell of no licence"
         assert part.purl == f"pkg:pypi/{part.name}@{part.version}"
+
+
+def test_the_debian_bill_has_what_its_packages_depend_on_and_nothing_of_pip() -> None:
+    text = (supply.ROOT / "cmake/Deb.cmake").read_text(encoding="utf-8")
+    found = re.search(r'TOOLS_PACKAGE_DEPENDS\s+"([^"]+)"', text)
+    assert found
+    wanted = {one.split()[0] for one in found[1].split(", ")}
+    parts = supply.parts_of("deb")
+    assert {part.name for part in parts if part.name.startswith("python3")} == wanted
+    assert all(part.purl.startswith("pkg:deb/debian/") for part in parts)
+
+
+def test_a_package_is_told_as_dpkg_and_apt_do() -> None:
+    told = (
+        "Package: python3-rich\nVersion: 13.3.1-1\nDescription: Version: 9\nHomepage: https://rich.invalid/\n"
+    )
+    assert supply.version_and_home(told) == ("13.3.1-1", "https://rich.invalid/")
+    assert supply.version_and_home("Version: 1:2\nHomepage: \n") == ("1:2", "")
+    assert supply.version_and_home("") == ("", "")
 
 
 def test_what_a_package_needs_comes_along_and_nothing_else() -> None:

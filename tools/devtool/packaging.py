@@ -213,6 +213,12 @@ def keep(made: Iterable[Path]) -> None:
         say(shown(DIST / path.name))
 
 
+def make_all(run: Run) -> None:
+    """Make what this machine installs: the wheel and the Debian packages."""
+    make_wheel(HERE, run)
+    make_deb(run)
+
+
 def do_package(args: argparse.Namespace) -> int:
     """Make what is asked for."""
     if args.arch != HERE and args.kind != "wheel":

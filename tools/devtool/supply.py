@@ -33,15 +33,20 @@ IN_ALL: Final = "argus"
 NCURSES, LIBC = "MIT-open-group", "LGPL-2.1-or-later"
 DEBIAN: Final[Mapping[str, tuple[tuple[str, str], ...]]] = {
     "wheel": (("libncurses-dev", NCURSES), ("libc6-dev", LIBC)),
-    "deb": (("libncurses6", NCURSES), ("libtinfo6", NCURSES), ("libc6", LIBC)),
+    "deb": (
+        *(("libncurses6", NCURSES), ("libtinfo6", NCURSES), ("libc6", LIBC)),
+        *(("python3", "PSF-2.0"), ("python3-numpy", "BSD-3-Clause"), ("python3-yaml", "MIT")),
+        *(("python3-serial", "BSD-3-Clause"), ("python3-matplotlib", "PSF-2.0"), ("python3-rich", "MIT")),
+    ),
     "image": (
         ("libnewlib-arm-none-eabi", "BSD-3-Clause"),
         ("gcc-arm-none-eabi", "GPL-3.0-with-GCC-exception"),
     ),
 }
-"""Debian's packages that each of our products links with, or has linked in, and their licences by SPDX."""
+"""Debian's packages that each of our products links with, has linked in or depends on, and their licences by SPDX."""
 KINDS: Final = tuple(DEBIAN)
 DOCUMENTS: Final = Path("/usr/share/doc")
+FIELD: Final = re.compile(r"^(Version|Homepage): (\S+)$", re.MULTILINE)
 NEWEST: Final = re.compile(rb"^ -- .*>  (.+)$", re.MULTILINE)
 BOARD: Final = "mps2-an386"
 EPOCHS: Final = (1_600_000_000, 1_700_000_000)
@@ -88,13 +93,21 @@ def output_of(*command: str) -> str:
 
 
 def of_debian(name: str, licence: str) -> Part:
-    """Return the Debian package NAME as it is installed here; its age is that of its newest change."""
-    told = output_of("dpkg-query", "-W", "-f", "${Version}\n${Homepage}", name).splitlines()
-    number, home = (*told, "", "")[:2]
+    """Return the Debian package NAME as installed here, else as apt has it; its age is that of its newest change."""
+    installed_here = output_of("dpkg-query", "-W", "-f", "Version: ${Version}\nHomepage: ${Homepage}\n", name)
+    number, home = version_and_home(
+        installed_here or output_of("apt-cache", "show", "--no-all-versions", name)
+    )
     changes = DOCUMENTS / name / "changelog.Debian.gz"
     newest = NEWEST.search(gzip.decompress(changes.read_bytes())) if changes.exists() else None
     since = day_of(newest[1].decode()) if newest else ""
     return Part(name, number, licence, f"pkg:deb/debian/{name}@{number}", since, home)
+
+
+def version_and_home(told: str) -> tuple[str, str]:
+    """Return both from what dpkg or apt tells of a package; empty where it does not."""
+    fields = dict(FIELD.findall(told))
+    return fields.get("Version", ""), fields.get("Homepage", "")
 
 
 def day_of(mail_date: str) -> str:
@@ -178,7 +191,7 @@ def python_parts() -> list[Part]:
 def parts_of(kind: str) -> list[Part]:
     """Return what the product KIND is made of besides Argus itself."""
     linked = [of_debian(name, licence) for name, licence in DEBIAN[kind]]
-    return [*linked, *([] if kind == "image" else python_parts())]
+    return [*linked, *(python_parts() if kind == "wheel" else [])]
 
 
 def bill(kind: str, parts: Sequence[Part], epoch: int) -> dict[str, Any]:
@@ -248,13 +261,14 @@ def copy_tree(into: Path, epoch: int) -> None:
 
 
 def build_in(tree: Path, run: Run) -> dict[str, str]:
-    """Build argusd and the image of a board in TREE, with no compiler cache; return the digest of each."""
+    """Build argusd, the image of a board and the packages in TREE, with no compiler cache; return each one's digest."""
     plain: list[str | Path] = ["env", "-C", tree, "CCACHE_DISABLE=1"]
     common = ("-DARGUS_TESTS=OFF", "-DCMAKE_C_COMPILER_LAUNCHER=")
     for preset, target in (("release", "argusd"), (BOARD, "argus_image")):
         run([*plain, "cmake", "--preset", preset, *common, "-DARGUS_BENCH=OFF"])
         run([*plain, "cmake", "--build", f"build/{preset}", "--target", target, "-j", str(CORES)])
     made = {
+        **packages_in(tree, run),
         "argusd": tree / "build/release/argusd",
         "libargus.a": tree / "build/release/libargus.a",
         f"argus-{BOARD}.hex": tree / f"build/{BOARD}/argus-{BOARD}.hex",
@@ -262,6 +276,18 @@ def build_in(tree: Path, run: Run) -> dict[str, str]:
         f"argus-{BOARD}.elf": tree / f"build/{BOARD}/argus-{BOARD}.elf",
     }
     return {name: hashlib.sha256(path.read_bytes()).hexdigest() for name, path in made.items()}
+
+
+def packages_in(tree: Path, run: Run) -> dict[str, Path]:
+    """Build wheel and Debian packages in TREE with this tree's tools; nothing where Debian's are not here."""
+    if shutil.which("dpkg-buildflags") is None:
+        say("wheel and Debian packages are not built twice: dpkg-dev is not here")
+        return {}
+    (tree / VENV.name).symlink_to(VENV)
+    plain = ("env", "-C", tree, "CCACHE_DISABLE=1", f"SOURCE_DATE_EPOCH={EPOCHS[0]}", "PYTHONPATH=tools:.")
+    make = "from devtool import commands, packaging; commands.quietly('packages', packaging.make_all)"
+    run([*plain, f"{VENV.name}/bin/python", "-c", make])
+    return {path.name: path for path in sorted((tree / DIST.name).iterdir())}
 
 
 def compare(first: Mapping[str, str], second: Mapping[str, str]) -> str:
@@ -284,9 +310,12 @@ def reproduce_stage(run: Run) -> str:
 
 def do_reproduce(_args: argparse.Namespace) -> int:
     """Build twice and tell the digests."""
-    ensure(["release", BOARD])
+    ensure(["release", BOARD], ["dpkg-dev"])
     told = list[str]()
-    quietly("building argusd and the image in two folders", lambda run: told.append(reproduce_stage(run)))
+    quietly(
+        "building argusd, the image and the packages in two folders",
+        lambda run: told.append(reproduce_stage(run)),
+    )
     say(told[0])
     return 0
 
@@ -303,6 +332,6 @@ def add_commands(add: Add) -> None:
     add(
         "reproduce",
         do_reproduce,
-        "build argusd and a board's image in two folders, of sources of two times, and compare the bytes",
+        "build argusd, a board's image and the packages in two folders, of sources of two times, and compare",
         "reproduce",
     )

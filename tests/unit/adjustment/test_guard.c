@@ -476,3 +476,59 @@ void test_questions_change_nothing(void) {
     TEST_ASSERT_EQUAL_MEMORY(&knowledge, &k, sizeof k);
     TEST_ASSERT_EQUAL_MEMORY(&echoes, &e, sizeof e);
 }
+
+// S1: without an echo the end that leads is heard no more: after one metre where it has heard none, after
+// four where it has, and at once where another end has led.
+void test_an_end_that_leads_without_an_echo_is_not_heard(void) {
+    static const struct {
+        bool heard, changed;
+        uint32_t mm;
+        bool led;
+    } rows[] = {{true, false, 3999, false}, {true, false, 4000, true},  {false, false, 999, false},
+                {false, false, 1000, true}, {false, true, 3999, false}, {false, true, 4000, true}};
+    use(ARGUS_PROFILE_ARGUS);
+    for (unsigned i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        for (int by_lead = 0; by_lead < 2; by_lead++) {
+            setUp();
+            use(ARGUS_PROFILE_ARGUS);
+            k.heard = rows[i].heard ? (argus_mask_t)0xFFFFu : 0;
+            k.odometer_mm = 20000;
+            g.lead_changed = rows[i].changed;
+            g.lead_mm = by_lead != 0 ? 20000 - rows[i].mm : 0;
+            for (int s = 0; s < SONARS; s++) { // the lesser of both ways counts
+                k.sonar[s].echo_mm = by_lead != 0 ? 0 : 20000 - rows[i].mm;
+            }
+            if (!rows[i].heard && by_lead == 0) {
+                continue; // an echo that never was has no way
+            }
+            TEST_ASSERT_EQUAL(rows[i].led, argus_guard_has_led(&g));
+            TEST_ASSERT_EQUAL(rows[i].heard && !rows[i].led, argus_guard_is_heard(&g));
+        }
+    }
+    use(ARGUS_PROFILE_PAPER); // asks for none
+    TEST_ASSERT_FALSE(argus_guard_has_led(&g));
+    TEST_ASSERT_TRUE(argus_guard_is_heard(&g));
+}
+
+// S5: what is doubted ahead is not counted on by rules that drive by what others have seen; the other rules
+// do not drive with a doubt at all, so there it is the way that is seen.
+void test_s5_doubt_slows_by_the_rules_that_drive_with_it(void) {
+    for (int seen = 0; seen < 2; seen++) {
+        for (int doubted = 0; doubted < 2; doubted++) {
+            setUp();
+            use(ARGUS_PROFILE_ARGUS);
+            argus_profile_t rules = *g.profile;
+            rules.drives_seen = seen;
+            g.profile = &rules;
+            k.heard = (argus_mask_t)0xFFFFu;
+            if (doubted != 0) {
+                put_health(&k.sonar[3], ARGUS_SUSPECT, ARGUS_KIND_WRONG, NOW_MS);
+            }
+            const int32_t mm_s = argus_guard_speed_mm_s(&g, INT32_MAX);
+            const bool slow = seen != 0 && doubted != 0;
+            TEST_ASSERT_EQUAL(slow ? argus_min(config.step_speed_mm_s, config.speed_mm_s)
+                                   : argus_guard_free_speed_mm_s(&g, INT32_MAX),
+                              mm_s);
+        }
+    }
+}

@@ -85,3 +85,10 @@ void test_a_string_is_as_long_as_it_tells(void) {
     TEST_ASSERT_TRUE(admit(ended, sizeof ended));
     TEST_ASSERT_FALSE(admit(cut, sizeof cut));
 }
+
+void test_a_number_is_no_string(void) {
+    static const uint8_t bare[] = {ARCOS_CMD_TTY2};
+    TEST_ASSERT_FALSE(admit_int(ARCOS_CMD_TTY2, ARCOS_ARG_POSITIVE, 0));
+    TEST_ASSERT_FALSE(admit_int(ARCOS_CMD_TTY2, ARCOS_ARG_NEGATIVE, 1));
+    TEST_ASSERT_TRUE(admit(bare, sizeof bare));
+}

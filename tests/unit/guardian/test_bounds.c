@@ -197,3 +197,17 @@ void test_a_tight_curve_is_slow_where_there_is_no_room(void) {
         before_mm_s = bound.speed_mm_s;
     }
 }
+
+// The rules of the paper ask for no echo: behind, as fast as the manager drives.
+void test_back_by_the_rules_of_the_paper_no_echo_is_asked_for(void) {
+    for (int paper = 0; paper < 2; paper++) {
+        begin_with(ARGUS_PROFILE_ARGUS);
+        argus_profile_t rules = *argus_rules(core);
+        rules.asks_echo = paper == 0;
+        core->rules = &rules;
+        core->knowledge.heard = 0;
+        const int32_t mm_s = argus_bound_way(core, false).speed_mm_s;
+        TEST_ASSERT_EQUAL(paper != 0, mm_s == core->config.speed_mm_s);
+        TEST_ASSERT_EQUAL(paper == 0, mm_s < core->config.speed_mm_s);
+    }
+}

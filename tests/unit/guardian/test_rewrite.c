@@ -200,3 +200,36 @@ void test_a_sonar_beyond_the_four_arrays_is_passed(void) {
     TEST_ASSERT_EQUAL_size_t(sizeof sip - 9, argus_rewrite_sip(&robot.argus, &how, data, sizeof data, out));
     TEST_ASSERT_EQUAL_UINT8(32, out[20]);
 }
+
+// A ray tells its time modulo 65.536 s: one of a minute ago is not one of now.
+void test_what_was_heard_a_minute_ago_covers_nothing(void) {
+    take_out(3);
+    turn_away_and_back();
+    TEST_ASSERT_TRUE(argus_rewrite_cover_mm(&robot.argus, 3) > 0);
+    robot.argus.knowledge.sip_ms += 65536;
+    TEST_ASSERT_EQUAL_INT32(0, argus_rewrite_cover_mm(&robot.argus, 3));
+    robot.argus.knowledge.sip_ms -= 65536;
+    TEST_ASSERT_TRUE(argus_rewrite_cover_mm(&robot.argus, 3) > 0);
+}
+
+// Only an echo covers: a ray that ends in the open, or one that says nothing, is none.
+void test_only_an_echo_covers(void) {
+    take_out(3);
+    turn_away_and_back();
+    const int32_t cover_mm = argus_rewrite_cover_mm(&robot.argus, 3);
+    TEST_ASSERT_TRUE(cover_mm > 0);
+    for (int open = 0; open < 2; open++) {
+        for (int i = 0; i < ARGUS_RAYS_MAX; i++) {
+            robot.argus.rays.at[i].free_mm = open != 0 ? ARGUS_RAY_TRUST_MM : 0;
+        }
+        TEST_ASSERT_EQUAL_INT32(0, argus_rewrite_cover_mm(&robot.argus, 3));
+    }
+}
+
+void test_a_port_that_no_robot_has_is_not_shown(void) {
+    memset(&analog, 0, sizeof analog);
+    robot_shows(2, 40);
+    analog.wants = ARGUS_ANALOG_PORTS;
+    robot_shows(3, 41);
+    shows(2, 2, 40);
+}

@@ -92,3 +92,22 @@ void test_a_client_cannot_fill_the_outbox(void) {
     TEST_ASSERT_TRUE(passed > 0 && out.length <= 320);
     TEST_ASSERT_TRUE(argus_outbox_plain(&out, ARCOS_CMD_STOP));
 }
+
+// What a client has set stays; what it has not is the robot's own, or the usual where that has not come.
+void test_a_clients_settings_are_filled_and_not_replaced(void) {
+    static argus_outbox_t out;
+    const argus_grant_t grant = {.core = &robot.argus, .out = &out, .motion = &robot.argus.motion};
+    for (int told = 0; told < 2; told++) {
+        setUp();
+        out = (argus_outbox_t){0};
+        robot.argus.session.robot.vel_max_mm_s = told != 0 ? 900 : 0;
+        argus_port_settings_t settings = {.setrv_deg_s = 30, .turn_accel_deg_s2 = 55};
+        argus_send_settings(&grant, &settings);
+        TEST_ASSERT_EQUAL(told != 0 ? 900 : 750, settings.setv_mm_s);
+        TEST_ASSERT_EQUAL(30, settings.setrv_deg_s);
+        TEST_ASSERT_EQUAL(55, settings.turn_accel_deg_s2);
+        settings.setv_mm_s = 123;
+        argus_send_settings(&grant, &settings);
+        TEST_ASSERT_EQUAL(123, settings.setv_mm_s);
+    }
+}

@@ -235,3 +235,29 @@ void test_a_round_body_swings_within_its_own_circle(void) {
     TEST_ASSERT_EQUAL(ARGUS_RING_OK, argus_robot_make(&own, &ring).fault);
     TEST_ASSERT_EQUAL(170, own.rows[0].swing_radius_mm);
 }
+
+// Two at one place are two as long as they look elsewhere, and one figure apart is apart.
+void test_only_one_at_the_same_place_and_bearing_is_the_same(void) {
+    static const int16_t apart[][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    for (unsigned i = 0; i < sizeof apart / sizeof apart[0]; i++) {
+        setUp();
+        mounts[7] = mounts[6];
+        mounts[7].x_mm = (int16_t)(mounts[7].x_mm + apart[i][0]);
+        mounts[7].y_mm = (int16_t)(mounts[7].y_mm + apart[i][1]);
+        mounts[7].heading_deg = (int16_t)(mounts[7].heading_deg + apart[i][2]);
+        TEST_ASSERT_EQUAL(i != 0, argus_robot_make(&own, &ring).fault == ARGUS_RING_OK);
+    }
+}
+
+void test_a_name_as_long_as_there_is_room_for_is_taken_whole(void) {
+    char name[ARGUS_ROBOT_NAME_MAX + 1];
+    for (size_t length = 1; length <= ARGUS_ROBOT_NAME_MAX; length++) {
+        memset(name, 'a', sizeof name);
+        name[length] = '\0';
+        setUp();
+        ring.name = name;
+        const bool fits = length < ARGUS_ROBOT_NAME_MAX;
+        TEST_ASSERT_EQUAL(fits ? ARGUS_RING_OK : ARGUS_RING_NAME, argus_robot_make(&own, &ring).fault);
+        TEST_ASSERT_TRUE(!fits || strcmp(own.rows[0].name, name) == 0);
+    }
+}

@@ -181,3 +181,23 @@ void test_a_sonar_that_is_out_is_faulty_beyond_doubt(void) {
     TEST_ASSERT_EQUAL(ARGUS_KIND_STUCK, suspicions.kind[4]);
     TEST_ASSERT_LESS_THAN(100, suspicions.percent[4]);
 }
+
+// Full is no breach, of any of them.
+void test_what_is_full_or_at_its_end_is_sound(void) {
+    sound()->session.outbox.length = ARGUS_OUTBOX_BYTES;
+    is_broken(0);
+    sound()->session.parser.length = ARGUS_FRAME_TOTAL_MAX;
+    is_broken(0);
+    sound()->events.head = ARGUS_EVENT_QUEUE - 1;
+    is_broken(0);
+    argus_t *const course = sound();
+    course->travel.task.count = ARGUS_WAYPOINTS_MAX;
+    course->travel.task.next = ARGUS_WAYPOINTS_MAX;
+    is_broken(0);
+    sound()->echoes.count = ARGUS_POINTS_MAX;
+    is_broken(0);
+    sound()->echoes.next = ARGUS_POINTS_MAX - 1;
+    is_broken(0);
+    sound()->plan.count = ARGUS_ROTATIONS_MAX;
+    is_broken(0);
+}

@@ -268,3 +268,21 @@ void test_many_refusals_are_survived(void) {
         (void)chooses();
     }
 }
+
+// There is no way out to where nobody wants to go.
+void test_without_a_course_there_is_no_escape(void) {
+    TEST_ASSERT_TRUE(argus_task_escape(&t, &k, &e, 0));
+    memset(&t, 0, sizeof t);
+    TEST_ASSERT_FALSE(argus_task_escape(&t, &k, &e, 0));
+    TEST_ASSERT_FALSE(t.has_leg);
+}
+
+// What was given up is not taken up again by looking at it.
+void test_a_leg_that_was_given_up_is_not_kept(void) {
+    TEST_ASSERT_TRUE(chooses());
+    argus_task_keep(&t, &k, &e);
+    TEST_ASSERT_TRUE(t.has_leg);
+    t.has_leg = false;
+    argus_task_keep(&t, &k, &e);
+    TEST_ASSERT_FALSE(t.has_leg);
+}
