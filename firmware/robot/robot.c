@@ -69,10 +69,12 @@ bool argus_robot_is_own(const argus_robot_t *const self) {
 
 const argus_robot_t *argus_robot_other_end(const argus_robot_t *const self) {
     const argus_robot_t *const other = self->other != 0 ? self + self->other : NULL;
-    const bool managed_whole =
-        other != NULL && other->forward[0] < ARGUS_SONARS &&     // GCOV_EXCL_BR_LINE: of 8
-        other->forward[other->forward_count - 1] < ARGUS_SONARS; // GCOV_EXCL_BR_LINE: of 8
-    return managed_whole ? other : NULL;
+    if (other == NULL) {
+        return NULL;
+    }
+    const int last = other->forward[other->forward_count - 1];
+    const bool whole = other->forward[0] < ARGUS_SONARS && last < ARGUS_SONARS; // GCOV_EXCL_BR_LINE: as below
+    return whole ? other : NULL; // GCOV_EXCL_BR_LINE: a build of 8 sonars manages one end only
 }
 
 const argus_robot_t *argus_robot_built(const argus_robot_t *const self) {

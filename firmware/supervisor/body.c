@@ -78,8 +78,7 @@ void argus_meet_body(argus_t *const self) {
     const argus_robot_t *const met = robot_met(self);
     const argus_robot_t *const robot = met != NULL ? met : argus_robot_unknown();
     const bool active = !self->orders.passive || self->orders.barred;
-    if (robot->sonars >
-        ARGUS_SONARS) { // GCOV_EXCL_BR_LINE: no row of a table has more than the largest build
+    if (robot->sonars > ARGUS_SONARS) { // GCOV_EXCL_BR_LINE: in a small build only
         argus_emit(&self->events, ARGUS_EV_SONARS_BEYOND, robot->sonars); // GCOV_EXCL_LINE: likewise
     }
     change_to(self, robot);

@@ -289,3 +289,33 @@ void test_a_suspicion_goes_with_its_evidence(void) {
         TEST_ASSERT_EQUAL(kept == 0 ? ARGUS_HEALTHY : ARGUS_SUSPECT, sonar(AHEAD)->health);
     }
 }
+
+// Where the robot may not turn, no look can prove what is not certain: there it is out for what it is named
+// for.
+void test_hemmed_in_a_suspect_is_given_up_for_its_name(void) {
+    for (int hemmed = 0; hemmed < 2; hemmed++) {
+        setUp();
+        if (hemmed != 0) {
+            const argus_config_t config = robot_config_of(ARGUS_PROFILE_ARGUS);
+            robot_init(&robot, &config, 1000);
+            robot.world = robot_world_segments;
+            robot_box(&robot, -330, -300, 330, 300);
+            robot_run(&robot, 5000);
+            core->mission = ARGUS_MISSION_RUNNING;
+            core->waiting.last = ARGUS_WAIT_TURN;
+            core->waiting.since_ms = core->now_ms - 10000;
+        }
+        const argus_guard_t guard = argus_guard(core);
+        int one = AHEAD;
+        for (int i = 0; i < 8 && hemmed != 0; i++) {
+            one = argus_guard_echo_blocks(&guard, i) ? i : one;
+        }
+        TEST_ASSERT_EQUAL(hemmed != 0, argus_guard_echo_blocks(&guard, one));
+        put_health(sonar(one), ARGUS_SUSPECT, ARGUS_KIND_OFF, core->now_ms);
+        TEST_ASSERT_EQUAL(hemmed != 0, argus_is_hemmed_in(core));
+        score(one, ARGUS_TEST_PEERS, ARGUS_CEILING);
+        judge(one);
+        TEST_ASSERT_EQUAL(ARGUS_DISABLED, sonar(one)->health);
+        TEST_ASSERT_EQUAL(hemmed != 0 ? ARGUS_KIND_OFF : ARGUS_KIND_WRONG, sonar(one)->kind);
+    }
+}
