@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 from devtool import supply
+from devtool.base import ROOT
 from devtool.setup import HEADER, version
 from devtool.stages import StageFailed
 from devtool.supply import Part, bill, compare, needed, pinned, python_parts
@@ -45,7 +46,7 @@ def test_each_python_package_of_the_wheel_is_pinned_and_has_a_licence() -> None:
 
 
 def test_the_debian_bill_has_what_its_packages_depend_on_and_nothing_of_pip() -> None:
-    text = (supply.ROOT / "cmake/Deb.cmake").read_text(encoding="utf-8")
+    text = (ROOT / "cmake/Deb.cmake").read_text(encoding="utf-8")
     found = re.search(r'TOOLS_PACKAGE_DEPENDS\s+"([^"]+)"', text)
     assert found
     wanted = {one.split()[0] for one in found[1].split(", ")}
