@@ -13,6 +13,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from hil_sim.version import version
+
 ROOT = Path(__file__).resolve().parent.parent
 FOLDER = Path("docs/man")
 ARGUSD = "build/release/argusd"
@@ -335,14 +337,6 @@ def page(description: Page, version: str) -> str:
     lines.append(".SH SEE ALSO")
     lines.append(", ".join(f"\\fB{escaped(other)}\\fR(1)" for other in description.also))
     return "\n".join(lines) + "\n"
-
-
-def version() -> str:
-    """Return the version of the project."""
-    header = (ROOT / "firmware/include/argus/argus.h").read_text(encoding="utf-8")
-    found = re.search(r'^#define ARGUS_VERSION "(.+)"$', header, re.MULTILINE)
-    assert found is not None
-    return found[1]
 
 
 def main(argv: list[str] | None = None) -> int:

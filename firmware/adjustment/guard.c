@@ -66,8 +66,8 @@ bool argus_guard_has_led(const argus_guard_t *const self) {
     const argus_mask_t asked = asked_of(self);
     const unsigned live = argus_robot_polled(knowledge->robot) & ~(unsigned)argus_out(knowledge);
     const uint32_t unheard_mm = argus_unheard_mm(knowledge, (argus_mask_t)live);
-    const uint32_t led_mm = knowledge->odometer_mm - self->lead_mm;
-    const bool first = (knowledge->heard & asked) == 0 && !self->lead_changed;
+    const uint32_t led_mm = knowledge->odometer_mm - self->reverse.odometer_mm;
+    const bool first = (knowledge->heard & asked) == 0 && !self->reverse.done;
     return asked != 0 &&
            (unheard_mm < led_mm ? unheard_mm : led_mm) >= (first ? LEAD_FIRST_MM : ARGUS_LEAD_MM);
 }

@@ -16,6 +16,12 @@
 // heading.
 int32_t argus_guard_straight_half_mm(const argus_robot_t *robot);
 
+// The last change of the leading end, or the beginning of the session.
+typedef struct {
+    uint32_t odometer_mm;
+    bool done; // there was a change
+} argus_reverse_t;
+
 // What the answers rest on.
 typedef struct {
     const argus_config_t *config;
@@ -24,7 +30,7 @@ typedef struct {
     const argus_echoes_t *echoes;
     const argus_rays_t *rays;
     uint32_t now_ms;
-    uint32_t lead_mm;    // on the odometer, when the end that leads began to
+    argus_reverse_t reverse;
     int32_t faster_mm_s; // than it is set, it has been seen to drive; 0: it keeps to that
     int32_t late_ms;     // the link, beyond what S5 counts on
     uint16_t bumpers;    // pressed, as far as they were answered
@@ -32,7 +38,6 @@ typedef struct {
     bool active;         // it may command motions: neither passive nor leaving
     bool linked;         // a session is open and SIPs come
     bool checked;        // a full health check has passed since then
-    bool lead_changed;   // ... in this session
     bool squeezes;       // it has waited for room to turn: what the body needs will do
     bool creeps;         // no sonar sees the way, and the operator lets it creep
 } argus_guard_t;

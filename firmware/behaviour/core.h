@@ -6,6 +6,7 @@
 #include "adjustment/base.h"
 #include "adjustment/drive.h"
 #include "adjustment/firing.h"
+#include "adjustment/guard.h"
 #include "adjustment/motion.h"
 #include "adjustment/pace.h"
 #include "adjustment/plan.h"
@@ -99,12 +100,6 @@ typedef struct {
     uint32_t unsound_ms;  // a leap or slip of the odometry, the last one
     argus_near_t near[2]; // the last echoes within the swing circle in a turn, right and left
 } argus_reflexes_t;
-
-// The last change of the leading end, or the beginning of the session.
-typedef struct {
-    uint32_t odometer_mm;
-    bool done; // there was a change
-} argus_reverse_t;
 
 #define ARGUS_STAY_OPERATOR 1u // also against a client of a guard port
 #define ARGUS_STAY_CLIENT 2u   // until it drives

@@ -7,7 +7,6 @@ import contextlib
 import fcntl
 import hashlib
 import os
-import re
 import shutil
 import signal
 import subprocess
@@ -19,6 +18,7 @@ from typing import IO, Final
 
 from devtool.base import BUILD, EXIT_SETUP, LOGS, ROOT, VENV, Command, Stop, line_of, quiet_ok, say, words
 from devtool.system import BASIC_NEEDS, PRESET_NEEDS, base_python, ensure_system
+from hil_sim.version import version
 
 HEADER: Final = ROOT / "firmware/include/argus/argus.h"
 LOCK: Final = ROOT / "requirements.lock"
@@ -30,13 +30,6 @@ VENV_PROBE: Final = (
 def python_identity() -> str:
     """Return what a virtual environment is bound to: its interpreter and its place."""
     return f"{base_python()} {sys.version} {VENV}".replace("\n", " ")
-
-
-def version() -> str:
-    """Return the version of the project."""
-    found = re.search(r'^#define ARGUS_VERSION "(.+)"$', HEADER.read_text(encoding="utf-8"), re.MULTILINE)
-    assert found is not None
-    return found[1]
 
 
 def python_content() -> str:

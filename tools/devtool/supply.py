@@ -24,8 +24,9 @@ from typing import Any, Final
 from devtool.base import CORES, EXIT_USAGE, ROOT, VENV, Add, Run, Stop, say, shown
 from devtool.commands import quietly
 from devtool.packaging import DIST, release_time
-from devtool.setup import LOCK, ensure, version
+from devtool.setup import LOCK, ensure
 from devtool.stages import StageFailed
+from hil_sim.version import version
 
 PINNED: Final = re.compile(r"^([a-z0-9][a-z0-9._-]*)==([^ \\;]+)", re.MULTILINE)
 NAME: Final = re.compile(r"[A-Za-z0-9._-]+")

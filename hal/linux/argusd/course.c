@@ -50,7 +50,7 @@ static void strip(char *line) {
     }
 }
 
-static bool read_line(course_t *course, char *line, char *message, size_t capacity) {
+static bool take_line(course_t *course, char *line, char *message, size_t capacity) {
     argus_point_t point;
     strip(line);
     if (line[strspn(line, " \t")] == '\0') {
@@ -67,40 +67,22 @@ static bool read_line(course_t *course, char *line, char *message, size_t capaci
     return true;
 }
 
-// Reads to the end of the line and returns its length: -1 at the end of the file, -2 when it holds a NUL or
-// is too long.
-static int fetch_line(FILE *file, char *line, size_t capacity) {
-    size_t length = 0;
-    int byte = getc(file);
-    if (byte == EOF) {
-        return -1;
-    }
-    for (; byte != EOF && byte != '\n'; byte = getc(file)) {
-        if (byte == '\0' || length + 1 >= capacity) {
-            return -2;
-        }
-        line[length++] = (char)byte;
-    }
-    line[length] = '\0';
-    return (int)length;
-}
-
 bool course_read(course_t *course, FILE *file, const char *path, char *message, size_t capacity) {
     char line[LINE_MAX_BYTES];
     char problem[ARGUSD_MESSAGE_MAX / 2];
     memset(course, 0, sizeof *course);
-    int length = fetch_line(file, line, sizeof line);
-    for (int number = 1; length != -1; number++) {
-        if (length == -2) {
+    text_read_t found = text_read_line(file, line, sizeof line);
+    for (int number = 1; found != TEXT_END; number++) {
+        if (found != TEXT_LINE) {
             return text_refuse(message, capacity, "%s:%d: not a line of text; write x_mm,y_mm", path, number);
         }
         if (number == 1) {
             text_drop_mark(line);
         }
-        if (!read_line(course, line, problem, sizeof problem)) {
+        if (!take_line(course, line, problem, sizeof problem)) {
             return text_refuse(message, capacity, "%s:%d: %s", path, number, problem);
         }
-        length = fetch_line(file, line, sizeof line);
+        found = text_read_line(file, line, sizeof line);
     }
     if (ferror(file)) {
         return text_refuse(message, capacity, "%s: cannot be read: %s", path, strerror(errno));

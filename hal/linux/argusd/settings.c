@@ -191,23 +191,14 @@ static int take_line(load_t *load, char *line) {
 
 // Whether there was one; what is too long of it is refused, not split.
 static bool read_line(load_t *load, char *line, size_t capacity) {
-    size_t length = 0;
-    int byte = getc(load->file);
-    if (byte == EOF) {
-        return false;
+    const text_read_t found = text_read_line(load->file, line, capacity);
+    load->line += found != TEXT_END;
+    if (found == TEXT_NUL) {
+        refuse(load, "a NUL byte: this is not a text file");
+    } else if (found == TEXT_LONG) {
+        refuse(load, "the line is longer than %d characters", (int)capacity - 1);
     }
-    load->line++;
-    for (; byte != EOF && byte != '\n'; byte = getc(load->file)) {
-        if (byte == '\0') {
-            refuse(load, "a NUL byte: this is not a text file");
-        } else if (length + 1 < capacity) {
-            line[length++] = (char)byte;
-        } else {
-            refuse(load, "the line is longer than %d characters", (int)capacity - 1);
-        }
-    }
-    line[length] = '\0';
-    return true;
+    return found != TEXT_END;
 }
 
 bool settings_read(settings_t *self, FILE *file, const char *path, char *message, size_t capacity) {

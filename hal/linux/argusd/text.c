@@ -127,6 +127,24 @@ bool text_length_mm(const char *text, int32_t *mm) {
     return true;
 }
 
+text_read_t text_read_line(FILE *const file, char *const line, const size_t capacity) {
+    text_read_t result = TEXT_LINE;
+    size_t length = 0;
+    int byte = getc(file);
+    if (byte == EOF) {
+        return TEXT_END;
+    }
+    for (; byte != EOF && byte != '\n'; byte = getc(file)) {
+        if (byte != '\0' && length + 1 < capacity) {
+            line[length++] = (char)byte;
+        } else if (result == TEXT_LINE) {
+            result = byte == '\0' ? TEXT_NUL : TEXT_LONG;
+        }
+    }
+    line[length] = '\0';
+    return result;
+}
+
 void text_drop_mark(char *line) {
     static const char mark[] = "\xEF\xBB\xBF";
     if (strncmp(line, mark, sizeof mark - 1) == 0) {

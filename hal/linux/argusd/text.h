@@ -7,6 +7,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 
 typedef struct {
     char *at;
@@ -30,6 +31,12 @@ bool text_number(const char *text, int32_t *value);
 // A length in mm: a whole number, or a decimal one with its unit, as 1500, 2m, 1.5m, -20cm or 300mm, rounded
 // to whole mm; else as above.
 bool text_length_mm(const char *text, int32_t *mm);
+
+typedef enum { TEXT_LINE, TEXT_END, TEXT_LONG, TEXT_NUL } text_read_t;
+
+// Reads a line of a file to its end, without that. Of one that is no text, or too long, it returns the first
+// reason, and `line` has what fits.
+text_read_t text_read_line(FILE *file, char *line, size_t capacity);
 
 // A mark of UTF-8, as some editors write it at the beginning of a file, is none of its text.
 void text_drop_mark(char *line);

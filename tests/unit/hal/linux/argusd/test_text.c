@@ -19,6 +19,27 @@ void test_appends_and_cuts(void) {
     TEST_ASSERT_EQUAL_CHAR('\0', buffer[7]);
 }
 
+void test_a_line_is_read_to_its_end_whatever_it_holds(void) {
+    static const char content[] = "1234567\n12345678\n\n1\0"
+                                  "2345678\nlast";
+    static const struct {
+        text_read_t found;
+        const char *text;
+    } expected[] = {{TEXT_LINE, "1234567"}, {TEXT_LONG, "1234567"}, {TEXT_LINE, ""},
+                    {TEXT_NUL, "1234567"},  {TEXT_LINE, "last"},    {TEXT_END, "last"}};
+    char line[8 + 1] = "XXXXXXXX";
+    FILE *const file = tmpfile();
+    TEST_ASSERT_NOT_NULL(file);
+    fwrite(content, 1, sizeof content - 1, file);
+    TEST_ASSERT_EQUAL_INT(0, fseek(file, 0, SEEK_SET));
+    for (size_t i = 0; i < sizeof expected / sizeof expected[0]; i++) {
+        TEST_ASSERT_EQUAL_INT(expected[i].found, text_read_line(file, line, 8));
+        TEST_ASSERT_EQUAL_STRING(expected[i].text, line);
+        TEST_ASSERT_EQUAL_CHAR('\0', line[8]);
+    }
+    fclose(file);
+}
+
 void test_refuse_is_always_false(void) {
     char buffer[16];
     TEST_ASSERT_FALSE(text_refuse(buffer, sizeof buffer, "no %s", "way"));
