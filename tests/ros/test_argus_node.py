@@ -240,8 +240,8 @@ def test_argusd_that_goes_away_is_said_and_found_again(robot: Any) -> None:
     bot = robot("--world", "demo")
     bot.await_("pose")
     bot.argusd.end()
-    gone = bot.await_("/diagnostics", lambda m: m.status[0].level == b"\x03")
-    assert "argus.sock" in values_of(gone.status[0])["argusd"]
+    gone = bot.await_("/diagnostics", lambda m: "argus.sock" in values_of(m.status[0]).get("argusd", ""))
+    assert gone.status[0].level == b"\x03"
     bot.argusd = Argusd([*bot.argusd.command[1:]])
     bot.bench.take()
     bot.await_("pose")

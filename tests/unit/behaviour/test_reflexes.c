@@ -18,10 +18,7 @@ static argus_t *core;
 static argus_intent_t intent;
 
 void setUp(void) {
-    const argus_config_t config = robot_config_of(ARGUS_PROFILE_ARGUS);
-    robot_init(&robot, &config, 1000);
-    robot.world = robot_world_segments;
-    robot_box(&robot, -3000, -3000, 3000, 3000);
+    robot_in_box(&robot, ARGUS_PROFILE_ARGUS, -3000, -3000, 3000, 3000);
     robot_run(&robot, 5000);
     core = &robot.argus;
 }

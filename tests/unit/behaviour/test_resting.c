@@ -17,10 +17,7 @@ static argus_t *core;
 static argus_intent_t intent;
 
 static void begin_in(double half_x_mm, double half_y_mm) {
-    const argus_config_t config = robot_config_of(ARGUS_PROFILE_ARGUS);
-    robot_init(&robot, &config, 1000);
-    robot.world = robot_world_segments;
-    robot_box(&robot, -half_x_mm, -half_y_mm, half_x_mm, half_y_mm);
+    robot_in_box(&robot, ARGUS_PROFILE_ARGUS, -half_x_mm, -half_y_mm, half_x_mm, half_y_mm);
     robot_run(&robot, 5000);
     core = &robot.argus;
     intent = (argus_intent_t){0};

@@ -12,10 +12,7 @@ static robot_t robot;
 static argus_t *core;
 
 void setUp(void) {
-    const argus_config_t config = robot_config_of(ARGUS_PROFILE_ARGUS);
-    robot_init(&robot, &config, 1000);
-    robot.world = robot_world_segments;
-    robot_box(&robot, -3000, -3000, 3000, 3000);
+    robot_in_box(&robot, ARGUS_PROFILE_ARGUS, -3000, -3000, 3000, 3000);
     robot_run(&robot, 6000);
     core = &robot.argus;
     TEST_ASSERT_FALSE(argus_should_turn_about(core));

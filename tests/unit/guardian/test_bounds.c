@@ -15,10 +15,7 @@ static client_t client;
 static argus_t *core;
 
 static void begin_with(int32_t profile) {
-    const argus_config_t settings = robot_config_of(profile);
-    robot_init(&robot, &settings, 1000);
-    robot.world = robot_world_segments;
-    robot_box(&robot, -4000, -4000, 4000, 4000);
+    robot_in_box(&robot, profile, -4000, -4000, 4000, 4000);
     client_init(&client, &robot);
     client_run(&client, 4000, false);
     client_open(&client);

@@ -17,10 +17,7 @@ static argus_hold_client_t hold;
 static argus_grant_t grant;
 
 void setUp(void) {
-    const argus_config_t settings = robot_config_of(ARGUS_PROFILE_ARGUS);
-    robot_init(&robot, &settings, 1000);
-    robot.world = robot_world_segments;
-    robot_box(&robot, -4000, -4000, 4000, 4000);
+    robot_in_box(&robot, ARGUS_PROFILE_ARGUS, -4000, -4000, 4000, 4000);
     client_init(&client, &robot);
     client_run(&client, 4000, false);
     client_open(&client);

@@ -19,10 +19,7 @@ static argus_t *core;
 static int said; // events
 
 static void begin(int32_t profile) {
-    const argus_config_t config = robot_config_of(profile);
-    robot_init(&robot, &config, 1000);
-    robot.world = robot_world_segments;
-    robot_box(&robot, -3000, -3000, 3000, 3000);
+    robot_in_box(&robot, profile, -3000, -3000, 3000, 3000);
     robot_run(&robot, 6000);
     core = &robot.argus;
     robot_drain(&robot);

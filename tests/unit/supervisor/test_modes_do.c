@@ -19,10 +19,7 @@ static int from; // commands so far
 static int said; // events
 
 static void begin(void) {
-    const argus_config_t config = robot_config_of(ARGUS_PROFILE_ARGUS);
-    robot_init(&robot, &config, 1000);
-    robot.world = robot_world_segments;
-    robot_box(&robot, -3000, -3000, 3000, 3000);
+    robot_in_box(&robot, ARGUS_PROFILE_ARGUS, -3000, -3000, 3000, 3000);
     TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_IDLE, 8000));
     robot_run(&robot, 3000);
     core = &robot.argus;

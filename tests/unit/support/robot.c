@@ -101,6 +101,14 @@ void robot_box(robot_t *robot, double x1, double y1, double x2, double y2) {
     robot->segments += 4;
 }
 
+void robot_in_box(robot_t *const robot, const int32_t profile, const double x1, const double y1,
+                  const double x2, const double y2) {
+    const argus_config_t config = robot_config_of(profile);
+    robot_init(robot, &config, 1000);
+    robot->world = robot_world_segments;
+    robot_box(robot, x1, y1, x2, y2);
+}
+
 static double ray(const robot_t *robot, double x, double y, double angle) {
     double best = 1e9;
     const double dx = cos(angle), dy = sin(angle);

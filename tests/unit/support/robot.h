@@ -169,6 +169,8 @@ const robot_command_t *robot_last_command(const robot_t *robot, int command);
 const argus_event_t *robot_last_event(const robot_t *robot, int id);
 bool robot_goal(robot_t *robot, int x_mm, int y_mm);
 void robot_box(robot_t *robot, double x1, double y1, double x2, double y2); // four walls
+// Begins in a box that its sonars see, with what robot_config_of() gives for a profile.
+void robot_in_box(robot_t *robot, int32_t profile, double x1, double y1, double x2, double y2);
 double robot_heading_deg(const robot_t *robot);
 uint32_t robot_random(robot_t *robot, uint32_t below);
 void robot_deliver(robot_t *robot, const uint8_t *bytes, size_t count);
