@@ -112,14 +112,14 @@ def test_a_host_that_is_late_for_a_single_test_fails_the_stage(runs: Runs) -> No
 
 def test_the_workers_follow_what_the_machine_gives() -> None:
     usual = worker_count(2, 1.0, 0.4)
-    assert usual == 10
+    assert usual == 11
     slow = worker_count(2, 1.0, 3 * 0.4)
     shared = worker_count(2, 1 / 3, 0.4)
     assert 2 < slow < usual
     assert slow == shared
     assert worker_count(1, 0.1, 2.0) == 2
-    assert worker_count(2, 1.0, 0.0) == 10
-    assert worker_count(8, 1.0, 0.2) == 32
+    assert worker_count(2, 1.0, 0.0) == 14
+    assert worker_count(8, 1.0, 0.2) == 56
 
 
 def test_the_latest_turn_is_found_in_every_truth_record_below_the_folder(tmp_path: Path) -> None:

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+import os
 import re
 import signal
 import subprocess
@@ -77,6 +79,61 @@ def test_nothing_is_listed_where_all_is_well(capfd: pytest.CaptureFixture[str]) 
     assert "fine" not in said
 
 
+def meeting(mine: Path, other: Path) -> list[str]:
+    """A program that ends well when the other of two has begun, too, and tells how nice it is."""
+    code = (
+        "import os, sys, time; from pathlib import Path; mine, other = map(Path, sys.argv[1:]); mine.touch()\n"
+        "until = time.monotonic() + 300\n"
+        "while not other.exists():\n    assert time.monotonic() < until\n    time.sleep(0.02)\n"
+        "print('nice', os.nice(0), flush=True)"
+    )
+    return [sys.executable, "-c", code, str(mine), str(other)]
+
+
+def test_what_computes_runs_behind_what_waits_for_robots(
+    logs: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """Both kinds meet, the results of both are listed in the order of the stages, and a failure of either counts."""
+    a, b = tmp_path / "a", tmp_path / "b"
+    todo = [
+        stage("computes", lambda run: run(meeting(a, b))),
+        dataclasses.replace(stage("waits", lambda run: run(meeting(b, a))), real_time=True),
+        stage("fails", failing),
+        dataclasses.replace(stage("lacks", lacking), real_time=True),
+        stage("noted", lambda run: "a note"),
+    ]
+    assert run_stages(todo, keep_going=True, verbose=False) == 1
+    said = capfd.readouterr().out
+    table = [line.split()[0] for line in said.splitlines() if " building" in line]
+    assert table == ["set-up", "computes", "waits", "fails", "lacks", "noted", "total"]
+    assert "failed: fails, lacks\n" in said
+    assert "a note" in said
+    least = os.nice(0)
+    assert f"nice {least}\n" in (logs / "waits.log").read_text()
+    assert f"nice {min(19, least + 10)}\n" in (logs / "computes.log").read_text()
+    assert os.nice(0) == least
+
+
+def test_of_what_is_timed_nothing_runs_beside_another(tmp_path: Path) -> None:
+    """Nor where the output is to be read, or the first failure ends all."""
+    order: list[str] = []
+    timed = [
+        dataclasses.replace(stage(name, lambda run, name=name: order.append(name)), real_time=True)  # type: ignore[misc]
+        for name in "ab"
+    ]
+    mixed = [*timed, stage("c", lambda run: order.append("c"))]
+    assert run_stages(timed, True, False) == 0
+    assert run_stages(mixed, True, True) == 0
+    assert run_stages(mixed, False, False) == 0
+    assert "".join(order) == "ab" + "abc" + "abc"
+
+
+def test_what_ends_early_beside_is_told() -> None:
+    todo = [stage("dies", lambda run: os._exit(1)), dataclasses.replace(stage("b", passing), real_time=True)]
+    with pytest.raises(Stop, match="ended without a result"):
+        run_stages(todo, True, False)
+
+
 def test_a_command_that_is_not_there_fails_its_stage_alone(capfd: pytest.CaptureFixture[str]) -> None:
     todo = [stage("a", lambda run: run(["/no/such/program"])), stage("b", passing)]
     assert run_stages(todo, True, False) == 1
@@ -140,11 +197,13 @@ import sys, time
 from pathlib import Path
 sys.path.insert(0, {tools!r})
 from devtool.base import leave_at_sigterm
-from devtool.stages import Stage, run_stage
+from devtool.stages import Stage, run_stages
 import devtool.stages as stages
 stages.LOGS = Path({logs!r})
 leave_at_sigterm()
-run_stage(Stage("a", "runs for ever", lambda run: run([sys.executable, "-c", {child!r}])), verbose=False)
+forever = Stage("a", "runs for ever", lambda run: run([sys.executable, "-c", {child!r}]), real_time={timed})
+other = Stage("b", "runs for ever, too", lambda run: run(["sleep", "600"]), real_time=not {timed})
+run_stages([forever, other], True, False)
 """
 CHILD = """
 import sys
@@ -171,12 +230,14 @@ def lives(process: int) -> bool:
         return False
 
 
+@pytest.mark.parametrize("timed", [True, False])
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
-def test_a_signal_ends_all_that_a_stage_has_started(number: int, tmp_path: Path) -> None:
+def test_a_signal_ends_all_that_a_stage_has_started(number: int, timed: bool, tmp_path: Path) -> None:
     """The robot is in a session of its own, as the peers' runs start it."""
     tools, pids = str(Path(__file__).parents[2] / "tools"), tmp_path / "pids"
     child = CHILD.format(tools=tools, robot=ROBOT.format(pids=str(pids)))
-    words = [sys.executable, "-c", ENDING.format(tools=tools, logs=str(tmp_path / "logs"), child=child)]
+    script = ENDING.format(tools=tools, logs=str(tmp_path / "logs"), child=child, timed=timed)
+    words = [sys.executable, "-c", script]
     dev = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     until = time.monotonic() + 300
     while not (pids.exists() and pids.read_text().count(" ")) and time.monotonic() < until:

@@ -21,6 +21,7 @@ NOISE_MM = 20
 SONAR_FACE_MM: int = load("robots/p3dx-sh")["body"]["sonar_face_mm"]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("sonar", range(1, 7))
 def test_every_bearing(bench: Bench, sonar: int) -> None:
     sim = bench.sim(bench.world(**hall_with_box(BOX_X_MM, sonar)), seed=sonar)
@@ -36,6 +37,7 @@ def test_every_bearing(bench: Bench, sonar: int) -> None:
         sim.wait_rest()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("sonar", [2, 3, 4, 6])
 def test_with_the_two_foremost_sonars_dead(bench: Bench, sonar: int) -> None:
     sim = bench.sim(bench.world(**hall_with_box(BOX_X_MM, sonar)), "off:3+4@0s", seed=sonar)
@@ -52,6 +54,7 @@ def test_with_the_two_foremost_sonars_dead(bench: Bench, sonar: int) -> None:
     assert argusd.named("PLAN_ROTATION")
 
 
+@pytest.mark.long
 def test_a_wall_that_only_the_sweep_sees_stops_the_next_step(bench: Bench) -> None:
     """The goal lies so near a wall that the last step before it may not be made."""
     sim = bench.sim(bench.world(**hall(length_mm=WALL_MM)), "off:3+4@0s")

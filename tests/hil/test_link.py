@@ -162,6 +162,7 @@ def test_signal_in_motion_stops_then_closes_in_order(bench: Bench, number: int) 
     sim.assert_no_collision()
 
 
+@pytest.mark.long
 def test_a_noisy_cable_delays_but_does_not_mislead(bench: Bench) -> None:
     sim = bench.sim(bench.world(**hall()), "link-corrupt@3s:p=0.2", "link-drop@3s:p=0.02", seed=5)
     argusd = bench.argusd("--goal", "1200,0")

@@ -27,6 +27,7 @@ def ring_of(bench: Bench, name: str) -> str:
     return str(path)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["amigobot", "roundbot"])
 def test_a_ring_of_another_make_is_driven_with_a_dead_sonar(bench: Bench, name: str) -> None:
     ring = ring_of(bench, name)

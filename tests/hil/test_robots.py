@@ -30,6 +30,7 @@ def assert_never_moved(sim: Sim, argusd: Argusd) -> None:
     assert argusd.status["active"] is False
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("robot", ROBOTS)
 def test_driven_to_a_goal_with_a_dead_sonar(bench: Bench, robot: str) -> None:
     dead, sonars = ROBOTS[robot]

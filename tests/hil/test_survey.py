@@ -29,6 +29,7 @@ def sonar_proves(faults: Sequence[str]) -> bool:
     return not any("angle" in fault or fault.startswith("silent") for fault in faults)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("faults", "broken"),
     [

@@ -57,6 +57,7 @@ def without_times(text: str) -> str:
     return re.sub(r"\d+(?:\.\d+)? s\b", "T s", text)
 
 
+@pytest.mark.long
 def test_the_log_tells_what_the_text_shows(told: tuple[Path, str]) -> None:
     found = re.search(rf"```sh\n{re.escape(FAULTS)}\n```\n\n```\n(.*?)```", TEXT, re.DOTALL)
     assert found is not None, "the output stands in a block of its own behind the command"
@@ -65,6 +66,7 @@ def test_the_log_tells_what_the_text_shows(told: tuple[Path, str]) -> None:
     assert (told[0] / "ring.png").stat().st_size > 10_000
 
 
+@pytest.mark.long
 def test_the_robot_answers_and_finds_its_dead_sonar(told: tuple[Path, str]) -> None:
     assert "p3dx-sh" in told[1]
     events = (told[0] / "drive.jsonl").read_text(encoding="utf-8")
@@ -73,6 +75,7 @@ def test_the_robot_answers_and_finds_its_dead_sonar(told: tuple[Path, str]) -> N
     assert '"event":"GOAL_REACHED"' in events
 
 
+@pytest.mark.long
 def test_every_drive_in_one_process_arrives(told: tuple[Path, str]) -> None:
     drives = re.findall(r"^(\d) reached: (\w+) hit: (\d+) sonar 3: (.*)$", told[1], re.MULTILINE)
     assert [drive[:3] for drive in drives] == [(str(seed), "True", "0") for seed in range(1, 6)]

@@ -87,9 +87,8 @@ def foreign_libraries(arch: str, run: Run) -> Path | None:
     return root
 
 
-def make_wheel(arch: str, run: Run) -> None:
-    """Build the wheel for ARCH, and tag it with the oldest system that it runs on."""
-    raw = WORK / f"wheel-{arch}"
+def build_wheel(arch: str, run: Run, raw: Path) -> Path:
+    """Build the wheel for ARCH in RAW, and tag it with the oldest system that it runs on; return that one."""
     shutil.rmtree(raw, ignore_errors=True)
     command: list[str | Path] = [
         VENV / "bin/python",
@@ -112,7 +111,13 @@ def make_wheel(arch: str, run: Run) -> None:
         run([*command, "--wheel-dir", raw, ROOT])
         [built] = raw.glob("*.whl")
         run([VENV / "bin/python", "-m", "auditwheel", "repair", "--wheel-dir", raw / "tagged", built])
-        keep((raw / "tagged").glob("*.whl"))
+    [tagged] = (raw / "tagged").glob("*.whl")
+    return tagged
+
+
+def make_wheel(arch: str, run: Run) -> None:
+    """Build the wheel for ARCH into dist/."""
+    keep([build_wheel(arch, run, WORK / f"wheel-{arch}")])
 
 
 def stage_tools(wheel: Path, stage: Path) -> None:

@@ -29,6 +29,7 @@ from devtool.base import (
     say,
     shown,
 )
+from devtool.setup import alone
 from devtool.stages import StageFailed, making
 from devtool.system import apt_install
 from hil_sim.arguments import offer
@@ -152,7 +153,8 @@ def lacking() -> str | None:
     if shutil.which("cbmc"):
         return None
     try:
-        apt_install(["cbmc"])
+        with alone():
+            apt_install(["cbmc"])
     except Stop as error:
         return f"skipped: CBMC cannot be had here ({str(error).splitlines()[0]})"
     return None if shutil.which("cbmc") else "skipped: CBMC cannot be had here"

@@ -119,11 +119,14 @@ do more in fewer turns, and so seem cheaper."""
 FILLED: Final = 0.6
 """How much of the machine tests may take on average, so that none waits for a core."""
 
+MOST_A_CORE: Final = 7
+"""So many tests at most for each core: what they start is begun at the same moment at times."""
+
 
 def worker_count(cores: int, core: float, start_s: float) -> int:
     """Return how many tests in real time may run at once on CORES of which the part CORE is to be had."""
     fits = int(FILLED * cores * core / (WORKER_STARTS * max(start_s, 1e-3)))
-    return min(max(fits, 2), max(10, 4 * cores))
+    return min(max(fits, 2), MOST_A_CORE * cores)
 
 
 def hil_workers() -> int:

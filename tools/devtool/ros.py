@@ -11,9 +11,9 @@ import tomllib
 from pathlib import Path
 from typing import Final
 
-from devtool.base import BUILD, LOGS, ROOT, Run, quiet_ok, say, words
+from devtool.base import BUILD, CORES, LOGS, ROOT, Run, quiet_ok, say, words
 from devtool.cmake import build
-from devtool.packaging import HERE, WORK, make_wheel
+from devtool.packaging import HERE, WORK, build_wheel
 from devtool.setup import run_steps
 from devtool.stages import making
 from devtool.system import base_python
@@ -21,7 +21,9 @@ from devtool.system import base_python
 VENV_ROS: Final = BUILD / "venv-ros"
 VENV_WHEEL: Final = BUILD / "venv-ros-wheel"
 """Its twin, in which the built wheel is installed in place of these sources."""
-TESTERS: Final = ("pytest>=8.0", "hypothesis>=6.98", "setuptools>=68", "websockets>=13")
+TESTERS: Final = ("pytest>=8.0", "pytest-xdist>=3.5", "hypothesis>=6.98", "setuptools>=68", "websockets>=13")
+PYTEST: Final = ("pytest", "-q", "-p", "no:cacheprovider", "-n", str(CORES + 1), "--dist", "worksteal")
+"""Each worker has a domain of its own; most wait for what their nodes hear."""
 MAKER: Final = ROOT / "tools/argus_ros/make_messages.py"
 NEEDS: Final = ("g++", "python-dev")
 
@@ -74,8 +76,7 @@ def lacking() -> str | None:
 
 def install_wheel(run: Run) -> None:
     """Build the wheel, and install it with its extras in a twin of the environment, which has none of these sources."""
-    make_wheel(HERE, run)
-    [wheel] = (WORK / f"wheel-{HERE}/tagged").glob("*.whl")
+    wheel = build_wheel(HERE, run, WORK / f"wheel-ros-{HERE}")
     shutil.rmtree(VENV_WHEEL, ignore_errors=True)
     # Files of the twin are links to those of the other: it takes seconds and no room.
     shutil.copytree(VENV_ROS, VENV_WHEEL, symlinks=True, copy_function=os.link)
@@ -93,5 +94,5 @@ def ros_tests(run: Run) -> str | None:
         if why is None:
             install_wheel(run)
     if why is None:
-        run([VENV_ROS / "bin/python", "-m", "pytest", "-q", "-p", "no:cacheprovider", "tests/ros"])
+        run([VENV_ROS / "bin/python", "-m", *PYTEST, "tests/ros"])
     return why

@@ -32,13 +32,14 @@ from devtool.base import (
     shown,
     words,
 )
+from devtool.beside import beside, yield_cores
 from devtool.setup import ensure
 from hil_sim.arguments import offer
 
 STAGE_LIMIT_S: Final = 5400.0
 """A guard against what hangs: many times what a stage takes, so that no busy host trips it."""
 
-GRACE_S: Final = 15.0
+GRACE_S: Final = 60.0
 """So long a program may take to end what it has started."""
 
 PROGRESS: Final = re.compile(
@@ -65,6 +66,8 @@ class Stage:
     """Raises StageFailed, or returns what is to be said although all is well."""
     presets: tuple[str, ...] = ()
     needs: tuple[str, ...] = ()
+    real_time: bool = False
+    """It waits for robots most of the time, and they must not wait for a core: others run behind it meanwhile."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -137,6 +140,7 @@ def process_group(command: Command, log: Path, verbose: bool) -> Iterator[subpro
             stderr=None if verbose else subprocess.STDOUT,
             start_new_session=True,
         )
+        yield_cores(child.pid)
         try:
             yield child
         except BaseException:
@@ -214,10 +218,9 @@ def table_line(name: str, good: bool, spent: Spent, made: Spent) -> str:
 
 
 def table_lines(
-    stages: Sequence[Stage], results: Mapping[str, Result], set_up: Spent | None = None
+    stages: Sequence[Stage], results: Mapping[str, Result], set_up: Spent, seconds: float
 ) -> Iterator[str]:
-    """Yield a line for what was set up, for each of STAGES, and their sum."""
-    set_up = set_up or Spent()
+    """Yield a line for what was set up, for each of STAGES, and their sum; all of it took SECONDS by the clock."""
     yield table_line("set-up", True, set_up, set_up)
     for stage in stages:
         result = results.get(stage.name)
@@ -230,7 +233,7 @@ def table_lines(
     good = len(results) == len(stages) and all(result.passed for result in results.values())
     spent = sum((result.spent for result in results.values()), set_up)
     made = sum((result.made for result in results.values()), set_up)
-    yield table_line("total", good, spent, made)
+    yield table_line("total", good, Spent(set_up.seconds + seconds, spent.cpu_s), made)
 
 
 def failed_lines(results: Mapping[str, Result]) -> Iterator[str]:
@@ -242,18 +245,47 @@ def failed_lines(results: Mapping[str, Result]) -> Iterator[str]:
         yield f"  {name:<14} {shown(result.log)}: {result.failure}"
 
 
-def run_stages(stages: Sequence[Stage], keep_going: bool, verbose: bool, set_up: Spent | None = None) -> int:
-    """Run STAGES one after another, print the summary, and return the exit code.
-
-    Robots run in real time: nothing runs beside them.
-    """
+def run_in_turn(stages: Sequence[Stage], keep_going: bool, verbose: bool) -> dict[str, Result]:
+    """Run STAGES one after another, to the end or until one fails."""
     results: dict[str, Result] = {}
     for stage in stages:
         results[stage.name] = run_stage(stage, verbose)
         if not results[stage.name].passed and not keep_going:
             break
+    return results
+
+
+def run_beside(stages: Sequence[Stage]) -> dict[str, Result]:
+    """Run those in real time, which leave the cores idle most of the time, one after another; the others behind them.
+
+    Of two that run in real time each would make the other's robots late.
+    """
+    timed = [stage for stage in stages if stage.real_time]
+    others = [stage for stage in stages if not stage.real_time]
+    with beside(lambda: run_in_turn(others, True, False)) as result_of_others:
+        results = run_in_turn(timed, True, False)
+        try:
+            results |= result_of_others()
+        except EOFError:
+            raise Stop("what ran beside the stages in real time ended without a result") from None
+    return {stage.name: results[stage.name] for stage in stages}
+
+
+def run_stages(stages: Sequence[Stage], keep_going: bool, verbose: bool, set_up: Spent | None = None) -> int:
+    """Run STAGES, print the summary, and return the exit code.
+
+    One after another where the first failure ends all, where the output of each is to be read, or where all are alike.
+    """
+    start_s = time.monotonic()
+    mixed = len({stage.real_time for stage in stages}) > 1
+    results = (
+        run_beside(stages)
+        if mixed and keep_going and not verbose
+        else run_in_turn(stages, keep_going, verbose)
+    )
     print()
-    for line in (*table_lines(stages, results, set_up), *failed_lines(results)):
+    table = table_lines(stages, results, set_up or Spent(), time.monotonic() - start_s)
+    for line in (*table, *failed_lines(results)):
         print(line, flush=True)
     return 0 if all(result.passed for result in results.values()) else EXIT_FAILED
 

@@ -110,7 +110,7 @@ def fuzz_tests(run: Run) -> None:
 def hil_tests(run: Run) -> str | None:
     """Run the tests over real ptys; they mostly sleep, so there are more of them at once than cores."""
     build("release", run)
-    pytest: Command = [*PYTEST, "--dist", "load"]
+    pytest: Command = [*PYTEST, "--dist", "load", "--maxschedchunk", "1"]
     return run_in_real_time(run, pytest, ["tests/hil"], hil_workers(), BUILD / "hil/host-late.json")
 
 
@@ -220,7 +220,7 @@ QUICK_STAGES: Final = (TABLES, RELEASE, CORTEX_M4, PYTHON)
 TEST_STAGES: Final = (
     TABLES,
     RELEASE,
-    Stage("hil", "argusd against the emulated robot over ptys", hil_tests, ("release",)),
+    Stage("hil", "argusd against the emulated robot over ptys", hil_tests, ("release",), real_time=True),
     ctest_stage(
         "sanitize", "C unit tests, built by clang with its address and undefined-behaviour sanitizers"
     ),
@@ -252,14 +252,16 @@ TEST_STAGES: Final = (
         can_tests,
         ("release",),
         ("can-utils",),
+        real_time=True,
     ),
-    Stage("ros", "nodes of ROS 2, where its packages can be had", ros_tests, ("release",), ROS_NEEDS),
+    Stage("ros", "nodes of ROS 2, where its packages can be had", ros_tests, ("release",), ROS_NEEDS, True),
     Stage("packages", "wheels and Debian packages, installed", package_tests, (), PACKAGE_NEEDS),
     Stage(
         "monitor",
         "the page of argus-monitor in a real Chromium, where one can be had",
         monitor_tests,
         ("release",),
+        real_time=True,
     ),
     Stage("docs", "the site of the documents, where its generator can be had", site_tests),
     Stage("proofs", "what CBMC proves of the firmware, where it can be had", proof_tests),

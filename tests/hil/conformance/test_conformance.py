@@ -109,6 +109,7 @@ def test_the_shares_are_all_checks() -> None:
     assert sorted(names) == sorted(check.title for check in CHECKS)
 
 
+@pytest.mark.long
 def test_our_emulator_on_ptys(tmp_path: Path) -> None:
     with robots(tmp_path) as addresses:
         results = results_of("serial", addresses)
@@ -117,6 +118,7 @@ def test_our_emulator_on_ptys(tmp_path: Path) -> None:
     assert len(results) == len(CHECKS)
 
 
+@pytest.mark.long
 def test_our_emulator_on_tcp(tmp_path: Path) -> None:
     with robots(tmp_path, "--tcp", "0") as addresses:
         results = results_of("tcp", addresses)
@@ -124,6 +126,7 @@ def test_our_emulator_on_tcp(tmp_path: Path) -> None:
     assert set(of(results, NOT_APPLICABLE)) == {"packets/host-baud"}
 
 
+@pytest.mark.long
 def test_the_vendor_emulators_habits(tmp_path: Path) -> None:
     with robots(tmp_path, "--tcp", "0", "--quirks", "mobilesim") as addresses:
         results = results_of("tcp", addresses, VENDOR_FAILS)
