@@ -15,8 +15,8 @@ import pytest
 from argus_tools.chunks import CLIENT_TO_ROBOT, ROBOT_TO_CLIENT, Chunk, ReadOptions
 from argus_tools.formats import LogError, canlog, open_log
 from argus_tools.formats.telnet import Telnet, is_telnet
-from argus_tools.formats.timeline import nanoseconds
 from argus_tools.log.packets import packets
+from argus_tools.timeline import nanoseconds
 from forms import CLIENT, ROBOT, SIPS, frames
 from logs import sip
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from argus_tools.chunks import ROBOT_TO_CLIENT, Chunk, DamageList
 from argus_tools.formats import open_log
-from argus_tools.formats.timeline import DAY_S, SECOND_MOST, STANDS_BYTES, YEAR_S, Timeline, Wrapping
+from argus_tools.timeline import DAY_S, SECOND_MOST, STANDS_BYTES, YEAR_S, Timeline, Wrapping
 
 SIP_BYTES = 50
 

@@ -34,8 +34,8 @@ from argus_tools.formats.text import (
     is_text,
     unmarked,
 )
-from argus_tools.formats.timeline import Timeline
 from argus_tools.formats.wrapped import Wrap, unwrapped
+from argus_tools.timeline import Timeline
 
 __all__ = [
     "Chunk", "Damage", "Direction", "Format", "Log", "LogError", "ReadOptions", "Reader", "Writer",

@@ -14,7 +14,7 @@ from argus_tools.chunks import Chunk, Damage, DamageList, Format, ReadOptions
 from argus_tools.formats.isotp import CanLink
 from argus_tools.formats.stamps import Times
 from argus_tools.formats.text import first_lines
-from argus_tools.formats.timeline import DAY_S, Wrapping
+from argus_tools.timeline import DAY_S, Wrapping
 
 _LINE_MAX: Final = 4096
 _SHORT_ID_MAX: Final = 0x7FF

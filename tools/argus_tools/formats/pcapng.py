@@ -13,8 +13,8 @@ from argus_tools.catalogue import HELP
 from argus_tools.chunks import Chunk, Damage, DamageList, Format, LogError, ReadOptions
 from argus_tools.formats.pcap import FRAME_MAX
 from argus_tools.formats.tcp import DEFAULT_PORT, LINK_ETHERNET, Connection
-from argus_tools.formats.timeline import nanoseconds
 from argus_tools.formats.traffic import Captured, Traffic
+from argus_tools.timeline import nanoseconds
 
 _SECTION, _INTERFACE, _SIMPLE, _ENHANCED, _OLD_PACKET = 0x0A0D0D0A, 1, 3, 6, 2
 _ORDER_MAGIC: Final = 0x1A2B3C4D

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import Final, NamedTuple
 
-from argus_tools.formats.timeline import DAY_S, LEAP_YEAR_S, YEAR_S, Wrapping
+from argus_tools.timeline import DAY_S, LEAP_YEAR_S, YEAR_S, Wrapping
 
 _DATES: Final = (
     "%Y-%m-%d", "%Y/%m/%d", "%Y.%m.%d", "%d.%m.%Y", "%m/%d/%Y", "%d/%m/%Y", "%d-%m-%Y",

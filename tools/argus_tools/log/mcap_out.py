@@ -17,7 +17,6 @@ from mcap.data_stream import RecordBuilder
 from mcap.opcode import Opcode
 from mcap.records import Channel, Chunk, ChunkIndex, DataEnd, Footer, Header, Schema, Statistics
 
-from argus_tools.formats.timeline import nanoseconds
 from argus_tools.log.bulk import SIP_HEAD, Array
 from argus_tools.log.fields import HEADINGS, Decoder
 from argus_tools.log.packets import Row
@@ -33,6 +32,7 @@ from argus_tools.ros2_messages import (
     TRANSFORMS,
     log_record,
 )
+from argus_tools.timeline import nanoseconds
 from hil_sim.arcos import Sip
 from hil_sim.tables.robot import DEFAULT_ROBOT, robot_table
 

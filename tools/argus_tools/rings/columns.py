@@ -6,7 +6,7 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections import Counter
+from collections import Counter, deque
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from io import BufferedReader
@@ -25,8 +25,9 @@ from argus_tools.chunks import (
 )
 from argus_tools.rings.motion import Motion
 from argus_tools.rings.packet import identity_of
-from argus_tools.rings.packets import Pacer
+from argus_tools.rings.packets import SIP_S, Pacer
 from argus_tools.rings.silence import Silence
+from argus_tools.timeline import Timeline
 from hil_sim.arcos import frame
 from hil_sim.arguments import offer
 from hil_sim.tables.robot import DEFAULT_ROBOT, robot_table
@@ -34,6 +35,8 @@ from hil_sim.tables.robot import DEFAULT_ROBOT, robot_table
 LINE_MOST: Final = 1 << 20
 SURVEYED: Final = 3000
 RANGES_LEAST: Final = 2
+SIP_BYTES: Final = 50
+"""About as long is the packet that a row becomes."""
 MM_LEAST: Final = 30.0
 """A middle range above this is in millimetres: no sonar sees so many metres."""
 _UNITS: Final = {
@@ -217,13 +220,21 @@ class ColumnsLog:
         offsets, last, motion = Offsets(), -math.inf, Motion()
         discarded: Counter[str] = Counter()
         pacer = Pacer(self._table, True, lambda _: motion)
-        for number, row in rows:
+        timed = _Timed(rows, reader)
+        stands = False
+        for chunk in Timeline(timed, self.damage):
+            number, row = timed.rows.popleft()
             self.place = f"line {number}"
-            t = reader.time(row)
             ranges = reader.ranges(row)
             place = reader.motion(row)
-            if not math.isfinite(t) or (not ranges and place is None):
+            if not ranges and place is None:
                 continue
+            stood, stands = stands, chunk.t is None
+            t = chunk.t
+            if t is None:
+                t = last + SIP_S if math.isfinite(last) else 0.0
+            if stood and not stands:
+                last = min(last, t - SIP_S)  # which was reckoned while the clock stood
             if last - 1.0 < t <= last:
                 discarded["row that is not newer than the last"] += 1
                 continue
@@ -232,11 +243,29 @@ class ColumnsLog:
             last = t
             made += pacer.take(t, {k: silence.millimetres(range_m) for k, range_m in ranges.items()})
             for at, data in made:
+                when = None if stands else at
                 if not offsets.at[ROBOT_TO_CLIENT]:
-                    yield offsets.chunk(at, ROBOT_TO_CLIENT, frame(identity_of(self._table).data))
-                yield offsets.chunk(at, ROBOT_TO_CLIENT, data)
+                    yield offsets.chunk(when, ROBOT_TO_CLIENT, frame(identity_of(self._table).data))
+                yield offsets.chunk(when, ROBOT_TO_CLIENT, data)
         for what, count in discarded.items():
             self._options.tell(f"discarded: {count} x {what}")
+
+
+class _Timed:
+    """Rows in place of the packets that they become: their times are made rising as those of any log are."""
+
+    def __init__(self, rows: Iterator[Row], reader: _Reading) -> None:
+        self._rows, self._reader = rows, reader
+        self.rows: deque[Row] = deque()
+        self.place = ""
+
+    def __iter__(self) -> Iterator[Chunk]:
+        for number, row in self._rows:
+            t = self._reader.time(row)
+            if math.isfinite(t):
+                self.place = f"line {number}"
+                self.rows.append((number, row))
+                yield Chunk(t, ROBOT_TO_CLIENT, bytes(SIP_BYTES), number)
 
 
 class _Reading:

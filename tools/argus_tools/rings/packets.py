@@ -17,7 +17,7 @@ from argus_tools.rings.stamps import Newer
 from hil_sim.arcos import TIMING, frame
 from hil_sim.tables.robot import RobotTable
 
-_SIP_S: Final = TIMING["SIP_CYCLE_MS"] / 1000
+SIP_S: Final = TIMING["SIP_CYCLE_MS"] / 1000
 LATE_MOST_S: Final = 0.06
 """A message of all sonars is waited for so much longer than a cycle before a packet without readings goes."""
 EARLY_MOST_S: Final = 0.02
@@ -90,18 +90,18 @@ class Pacer:
         if self._last is None:
             return made
         if not 0 <= t - self._last <= GAP_S:
-            self._last = t - _SIP_S
+            self._last = t - SIP_S
         late_s = LATE_MOST_S if self._is_array else 0.0
-        while t - self._last >= _SIP_S + late_s:
-            made.append(self._packet(self._last + _SIP_S))
+        while t - self._last >= SIP_S + late_s:
+            made.append(self._packet(self._last + SIP_S))
         return made
 
     def take(self, t: float, readings: Mapping[int, int | None]) -> list[tuple[float, bytes]]:
         """Take the readings of a message, None for none; return the packet that they make, if they make one."""
         self._fresh |= {number: reading for number, reading in readings.items() if reading is not None}
         if self._last is None:
-            self._last = t - _SIP_S
-        is_due = self._is_array and t - self._last >= _SIP_S - EARLY_MOST_S
+            self._last = t - SIP_S
+        is_due = self._is_array and t - self._last >= SIP_S - EARLY_MOST_S
         return [self._packet(t)] if is_due else []
 
     def _packet(self, t: float) -> tuple[float, bytes]:
