@@ -10,9 +10,11 @@ from pathlib import Path
 import pytest
 from devtool import supply
 from devtool.base import ROOT
-from devtool.setup import HEADER, version
+from devtool.setup import HEADER
 from devtool.stages import StageFailed
 from devtool.supply import Part, bill, compare, needed, pinned, python_parts
+
+from hil_sim.version import version
 
 PART = Part("inih", "58-1", "BSD-3-Clause", "pkg:deb/debian/inih@58-1", "2024-01-02", "https://inih.invalid/")
 

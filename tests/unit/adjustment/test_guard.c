@@ -493,8 +493,8 @@ void test_an_end_that_leads_without_an_echo_is_not_heard(void) {
             use(ARGUS_PROFILE_ARGUS);
             k.heard = rows[i].heard ? (argus_mask_t)0xFFFFu : 0;
             k.odometer_mm = 20000;
-            g.lead_changed = rows[i].changed;
-            g.lead_mm = by_lead != 0 ? 20000 - rows[i].mm : 0;
+            g.reverse.done = rows[i].changed;
+            g.reverse.odometer_mm = by_lead != 0 ? 20000u - rows[i].mm : 0u;
             for (int s = 0; s < SONARS; s++) { // the lesser of both ways counts
                 k.sonar[s].echo_mm = by_lead != 0 ? 0 : 20000 - rows[i].mm;
             }
