@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import random
 import subprocess
@@ -164,10 +165,14 @@ def test_a_peer_with_frames_of_the_other_format_is_named(bus: str, option: str, 
     peer = threading.Thread(target=answer)
     peer.start()
     said_so = run_argusd("--link", f"can:{bus}{option}", "--check", "--wait", "3")
+    driving = run_argusd("--link", f"can:{bus}{option}", "--json", "--status", "500", "--wait", "4")
     done.set()
     peer.join()
     raw.close()
-    assert said_so.returncode == 4
+    *_, last = (json.loads(line) for line in driving.stdout.splitlines())
+    assert last["can"]["format"] > 0, "not only --check listens"
+    assert said_so.returncode == driving.returncode == 4
+    assert "CAN FD frames where this link has classic ones, or the reverse" in said(driving)
     assert "CAN FD frames where this link has classic ones, or the reverse" in said(said_so)
 
 
