@@ -172,7 +172,7 @@ def test_a_peer_with_frames_of_the_other_format_is_named(bus: str, option: str, 
     *_, last = (json.loads(line) for line in driving.stdout.splitlines())
     assert last["can"]["format"] > 0, "not only --check listens"
     assert said_so.returncode == driving.returncode == 4
-    assert "CAN FD frames where this link has classic ones, or the reverse" in said(driving)
+    assert "CAN FD frames where this link has classic ones, or the reverse" in driving.stderr
     assert "CAN FD frames where this link has classic ones, or the reverse" in said(said_so)
 
 
