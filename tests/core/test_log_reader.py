@@ -27,6 +27,20 @@ PARSER_BYTES = 4096  # room for an argus_parser_t
 _HEADER = b"\xfa\xfb"
 
 
+# What is inline has no name of its own in a library.
+CALLS = """
+#include "arcos/frame.h"
+size_t push(argus_parser_t *self, uint32_t now_ms, const uint8_t *bytes, size_t count);
+bool next(argus_parser_t *self, uint32_t now_ms, argus_packet_t *packet);
+size_t push(argus_parser_t *self, uint32_t now_ms, const uint8_t *bytes, size_t count) {
+    return argus_parser_push(self, now_ms, bytes, count);
+}
+bool next(argus_parser_t *self, uint32_t now_ms, argus_packet_t *packet) {
+    return argus_parser_next(self, now_ms, packet);
+}
+"""
+
+
 class _Packet(ctypes.Structure):
     _fields_ = (("data", ctypes.POINTER(ctypes.c_uint8)), ("count", ctypes.c_uint8))
 
@@ -37,7 +51,7 @@ class Parser:
     def __init__(self) -> None:
         core = _compiled()
         self._init, self._push, self._next = (
-            getattr(core, f"argus_parser_{name}") for name in ("init", "push", "next")
+            getattr(core, name) for name in ("argus_parser_init", "push", "next")
         )
         self._push.restype, self._next.restype = ctypes.c_size_t, ctypes.c_bool
         self._self = ctypes.create_string_buffer(PARSER_BYTES)
@@ -64,7 +78,8 @@ class Parser:
 def _compiled() -> ctypes.CDLL:
     firmware = ROOT / "firmware"
     with tempfile.TemporaryDirectory() as folder:
-        made = Path(folder, "frame.so")
+        made, calls = Path(folder, "frame.so"), Path(folder, "calls.c")
+        calls.write_text(CALLS, encoding="ascii")
         command: list[str | Path] = [
             "gcc",
             "-std=c11",
@@ -78,6 +93,7 @@ def _compiled() -> ctypes.CDLL:
             "-I",
             firmware / "include",
             firmware / "arcos/frame.c",
+            calls,
         ]
         subprocess.run(command, check=True, timeout=600)
         return ctypes.CDLL(str(made))
