@@ -18,7 +18,8 @@ import numpy as np
 ROOT: Final = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT), str(ROOT / "tools")]
 
-from argus_tools.chunks import LogError  # noqa: E402
+from argus_tools.chunks import DamageList, LogError  # noqa: E402
+from argus_tools.rings.dated import Dated  # noqa: E402
 from argus_tools.rings.intake import Odd  # noqa: E402
 from argus_tools.rings.plan import Place, Plan, planned  # noqa: E402
 from argus_tools.rings.recording import Bag, Broken  # noqa: E402
@@ -108,9 +109,10 @@ def _read_ring(bag: Bag, plan: Plan, found: Found, where: str) -> None:
     lasers = [one.name for one in bag.topics if one.type == SCAN and one.name.split("/")[:2] == robot]
     rests = {number: Rest(f"{where} sonar {number}") for number in plan.present}
     place, scan, seen, last_s = Place(plan), None, {}, -math.inf
+    corrected = DamageList()
     try:
         wanted = [*plan.topics, *lasers[:1], *filter(None, [plan.odometry])]
-        for message in bag.messages(wanted):
+        for message, _ in Dated(bag.messages(wanted), plan.topics[:1], corrected):
             try:
                 if message.topic == plan.odometry:
                     place.take(message)
@@ -124,6 +126,8 @@ def _read_ring(bag: Bag, plan: Plan, found: Found, where: str) -> None:
                 continue
     except Broken as error:
         print(f"fit_sonars: {where}: {error}; the rest is not read", file=sys.stderr)
+    for one in corrected:
+        print(f"fit_sonars: {where}: {one.place}: {one.what}", file=sys.stderr)
     found.rests += [rest for rest in rests.values() if len(rest.values) >= FIRINGS_LEAST]
 
 

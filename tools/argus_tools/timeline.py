@@ -52,6 +52,18 @@ class Wrapping(float):
         return made
 
 
+class Stepped(float):
+    """A time of a clock that was set just before: `passed_s` is what passed since the last, as another clock has it."""
+
+    passed_s: float
+
+    def __new__(cls, t: float, passed_s: float) -> Self:
+        """Return the time; it is a float to all but the timeline."""
+        made = super().__new__(cls, t)
+        made.passed_s = passed_s
+        return made
+
+
 def nanoseconds(t: float) -> int:
     """Return a time in nanoseconds as its digits say it; a float of today has a quarter of a microsecond only.
 
@@ -65,9 +77,10 @@ class Timeline:
     """Iterates chunks with their times made rising; what had to be corrected is appended to `damage`.
 
     Small disorder (DISORDER_S) is left as it is. A clock of the day goes on over midnight, one without a year over
-    New Year. One that falls, or is set from a time since boot to one since 1970, goes on from where it was. Negative
-    times are shifted to begin at 0. Of whole seconds only, the chunks of one second are spread evenly over it. Where
-    the clock stands the chunks have no time, as those of a log that keeps none, but for the first.
+    New Year. One that falls goes on from where it was, and so does one that is set ahead: from a time since boot to
+    one since 1970, or as a `Stepped` time says. Negative times are shifted to begin at 0. Of whole seconds only, the
+    chunks of one second are spread evenly over it. Where the clock stands the chunks have no time, as those of a log
+    that keeps none, but for the first.
 
     A log that is followed is not held up for that: its first whole seconds stay, and each later one is spread by how
     many chunks the one before it had.
@@ -109,7 +122,7 @@ class Timeline:
             else:
                 self._follow(chunk, t, last)
             self._raw = float(t)
-            if self._add_s or type(t) is Wrapping:
+            if self._add_s or type(t) is not float:
                 t = round(float(t) + self._add_s, 9)
                 chunk = chunk._replace(t=t)
             self._last = t if last is None else max(last, t)
@@ -135,10 +148,10 @@ class Timeline:
             if period_s := _period(t, self._raw):
                 self._before_s, self._add_s = self._add_s, self._add_s + period_s
                 return
-            self._add_s = last + STEP_S - t
+            self._add_s = last + _passed_s(t) - t
             self._report(chunk, f"the clock falls by {last - now:.3f} s; times go on from before")
-        elif last < BOOT_MAX_S and now > EPOCH_MIN_S:
-            self._add_s = last + STEP_S - t
+        elif isinstance(t, Stepped) or (last < BOOT_MAX_S and now > EPOCH_MIN_S):
+            self._add_s = last + _passed_s(t) - t
             self._report(chunk, f"the clock is set {now - last:.0f} s ahead; times go on from before")
 
     def _report(self, chunk: Chunk, what: str) -> None:
@@ -242,6 +255,11 @@ class Timeline:
                 yield from held
                 held, stands = held[:1], True
         yield from held[1:] if stands else _evenly(held, step_s)
+
+
+def _passed_s(t: float) -> float:
+    """Return what passed between two times between which the clock was set, the later one given."""
+    return t.passed_s if isinstance(t, Stepped) else STEP_S
 
 
 def _period(t: float, raw: float) -> float | None:

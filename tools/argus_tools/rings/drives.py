@@ -19,7 +19,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from argus_tools.chunks import LogError
+from argus_tools.chunks import DamageList, LogError
+from argus_tools.rings.dated import Dated
 from argus_tools.rings.intake import Odd
 from argus_tools.rings.plan import Place, planned
 from argus_tools.rings.recording import Bag, Broken, OwnMcap, Recording
@@ -63,9 +64,10 @@ def _scans(recording: Recording, name: str, topic: str) -> Iterator[Line]:
     plan = planned(recording, name, topic, None)
     if not plan.odometry and not plan.transforms:
         raise LogError(f"{name}: no odometry in it")
-    place = Place(plan)
+    place, corrected = Place(plan), DamageList()
+    wanted = [topic, *filter(None, [plan.odometry]), *plan.transforms]
     try:
-        for message in recording.messages([topic, *filter(None, [plan.odometry]), *plan.transforms]):
+        for message, _ in Dated(recording.messages(wanted), [topic], corrected):
             try:
                 if message.topic != topic:
                     place.take(message)
@@ -86,6 +88,8 @@ def _scans(recording: Recording, name: str, topic: str) -> Iterator[Line]:
             }
     except Broken as error:
         print(f"{name}: {error}; the rest is not read", file=sys.stderr)
+    for found in corrected:
+        print(f"{name}: {found.place}: {found.what}", file=sys.stderr)
 
 
 def _millimetres(ranges: Any, least_m: float, most_m: float) -> list[int]:

@@ -9,6 +9,7 @@ from dataclasses import replace
 from typing import Any, Final
 
 from argus_tools.chunks import ROBOT_TO_CLIENT, Chunk, Damage, DamageList, Offsets, ReadOptions
+from argus_tools.rings.dated import Dated
 from argus_tools.rings.motion import Motion
 from argus_tools.rings.packet import identity_of, sip_of
 from argus_tools.rings.recording import Broken, Message, Recording, Topic
@@ -46,23 +47,28 @@ class OwnLog:
         finally:
             recording.close()
 
-    def _sips(self, recording: Recording) -> Iterator[tuple[float, Sip]]:
+    def _sips(self, recording: Recording) -> Iterator[tuple[float | None, Sip]]:
         state: Message | None = None
+        t: float | None = None
         ranges: dict[int, int] = {}
-        for message in self._whole(recording):
+        ring = [topic.name for topic in recording.topics if topic.type in (SIP, STATE)]
+        for message, stands in Dated(self._whole(recording), ring, self.damage):
             self.place = f"{message.topic} at {message.t:.3f} s"
             if message.type == SIP:
                 body = message.body
-                yield round(message.t, 6), self._sip(body, dict(zip(body.sonar, body.range_mm, strict=True)))
+                yield (
+                    _time_of(message, stands),
+                    self._sip(body, dict(zip(body.sonar, body.range_mm, strict=True))),
+                )
                 continue
             if message.type == RANGE:
                 ranges[int(message.body.sonar)] = int(message.body.range_mm)
                 continue
             if state is not None:
-                yield round(state.t, 6), self._sip(state.body, ranges)
-            state, ranges = message, {}
+                yield t, self._sip(state.body, ranges)
+            state, t, ranges = message, _time_of(message, stands), {}
         if state is not None:
-            yield round(state.t, 6), self._sip(state.body, ranges)
+            yield t, self._sip(state.body, ranges)
 
     def _whole(self, recording: Recording) -> Iterator[Message]:
         wanted = [topic.name for topic in recording.topics if topic.type in (SIP, STATE, RANGE)]
@@ -83,3 +89,7 @@ class OwnLog:
             stall_left=int(state.stall_left) | int(state.bumpers_rear) << 1,
             stall_right=int(state.stall_right) | int(state.bumpers_front) << 1,
         )
+
+
+def _time_of(message: Message, stands: bool) -> float | None:
+    return None if stands else round(message.t, 6)

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Final
 
 from argus_tools.chunks import ROBOT_TO_CLIENT, Chunk, Damage, DamageList, Offsets, ReadOptions
+from argus_tools.rings.dated import Dated
 from argus_tools.rings.intake import Odd
 from argus_tools.rings.motion import Motion
 from argus_tools.rings.packet import identity_of, packet
@@ -49,14 +50,16 @@ class RangeLog:
     def _chunks(self, recording: Recording, plan: Plan) -> Iterator[Chunk]:
         offsets, sips, newer = Offsets(), _Packets(plan), Newer(plan.first)
         plan.first = []
-        for message in self._whole(recording, plan):
+        ring = plan.topics[:1] if plan.sensors.is_array else plan.topics
+        for message, stands in Dated(self._whole(recording, plan), ring, self.damage):
             self.place = f"{message.topic} at {message.t:.3f} s"
             try:
                 made = sips.take(message, newer)
             except Odd as error:
                 self._discard(message, str(error))
                 continue
-            for t, data in made:
+            for at, data in made:
+                t = None if stands else at
                 if not offsets.at[ROBOT_TO_CLIENT]:
                     yield offsets.chunk(t, ROBOT_TO_CLIENT, frame(identity_of(plan.table).data))
                 yield offsets.chunk(t, ROBOT_TO_CLIENT, data)

@@ -15,6 +15,7 @@ from types import SimpleNamespace
 from typing import Any, Final, NamedTuple, Protocol
 
 from argus_tools.chunks import LogError
+from argus_tools.rings.written import falls, indexed, of_bag1, of_bag2
 from argus_tools.ros2_messages import SIP, read_sip
 
 _NANO: Final = 1_000_000_000
@@ -77,13 +78,14 @@ class Bag:
         self.topics = [Topic(topic, kind, count) for (topic, kind), count in counts.items()]
 
     def messages(self, topics: Iterable[str]) -> Iterator[Message]:
-        """Yield the messages of these topics, in the order of the bag's clock."""
+        """Yield the messages of these topics, in the order of the bag's clock, if that does not fall."""
         wanted = set(topics)
         chosen = [one for one in self._reader.connections if one.topic in wanted]
         if not chosen:
             return
         try:
-            for connection, t_ns, raw in self._reader.messages(chosen):
+            given = of_bag1(self._reader, chosen) if self._is_first else of_bag2(self._reader, chosen)
+            for connection, t_ns, raw in given:
                 kind = connection.msgtype
                 store = self._store(kind, connection.msgdef)
                 take = store.deserialize_ros1 if self._is_first else store.deserialize_cdr
@@ -137,6 +139,8 @@ class OwnMcap:
                 f"{name}: an MCAP file without an index, as of a recorder that was killed: mcap recover FILE"
             )
         counts = summary.statistics.channel_message_counts
+        self._chunks = summary.chunk_indexes
+        self._channels = {number: channel.topic for number, channel in summary.channels.items()}
         self.topics = [
             Topic(channel.topic, summary.schemas[channel.schema_id].name, counts.get(number, 0))
             for number, channel in summary.channels.items()
@@ -145,9 +149,11 @@ class OwnMcap:
         ]
 
     def messages(self, topics: Iterable[str]) -> Iterator[Message]:
-        """Yield the messages of these topics by their log time."""
+        """Yield the messages of these topics by their log time, if that does not fall."""
+        wanted = list(topics)
         try:
-            for schema, channel, message in self._reader.iter_messages(topics=list(topics)):
+            by_time = not falls(self._times(wanted))
+            for schema, channel, message in self._reader.iter_messages(wanted, log_time_order=by_time):
                 if schema is not None and schema.name == SIP:
                     fields = SimpleNamespace(**read_sip(message.data))
                     yield Message(channel.topic, schema.name, message.log_time / _NANO, fields)
@@ -156,6 +162,14 @@ class OwnMcap:
                     yield Message(channel.topic, schema.name, message.log_time / _NANO, body)
         except Exception as error:
             raise Broken(_what(error)) from error
+
+    def _times(self, topics: list[str]) -> Iterator[tuple[Any, int]]:
+        """Yield channel and time of all messages, of each channel as they were written."""
+        if self._chunks:
+            channels = [number for number, topic in self._channels.items() if topic in topics]
+            return indexed(self._file, self._chunks, channels)
+        found = self._reader.iter_messages(topics, log_time_order=False)
+        return ((channel.id, message.log_time) for _, channel, message in found)
 
     def close(self) -> None:
         """Close the file."""

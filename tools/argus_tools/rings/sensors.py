@@ -199,7 +199,8 @@ class Singles:
         how = "where their frames are" if self._is_placed else "the numbers and order of their names"
         pairs = [f"{topic} = {number}" for (topic, _), number in self._sonars.items()]
         some = ", ".join(pairs[:3]) + (", ..." if len(pairs) > 3 else "")
-        return [f"{len(pairs)} topics are sonars of {self.table.subclass} by {how}: {some}"]
+        what = "1 topic is a sonar" if len(pairs) == 1 else f"{len(pairs)} topics are sonars"
+        return [f"{what} of {self.table.subclass} by {how}: {some}"]
 
     def take(self, message: Message) -> Readings:
         """Return the one reading."""

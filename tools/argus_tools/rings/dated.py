@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: MIT
+"""Messages of a recording with their times made rising, where those of every log are."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Collection, Iterable, Iterator
+from typing import Final
+
+from argus_tools.chunks import ROBOT_TO_CLIENT, Chunk, DamageList
+from argus_tools.rings.intake import Odd, stamp_of
+from argus_tools.rings.recording import Message
+from argus_tools.timeline import DISORDER_S, STANDS_BYTES, STANDS_CHUNKS, STEP_S, Stepped, Timeline
+
+CYCLE_BYTES: Final = STANDS_BYTES // STANDS_CHUNKS
+"""As much counts a cycle of the ring to the timeline, whose messages are of no serial port."""
+SET_LEAST_S: Final = 10.0
+"""By more than this no recorder is late: a queue has some hundred messages."""
+
+
+class Dated:
+    """Iterates messages with their times corrected, and whether the clock stands, where these are a cycle apart.
+
+    A message's stamp does not date it, but shows where the recorder's clock is set: stamps of another clock go on as
+    before there. ring: topics whose messages come once a cycle, of which others are told apart by their frame.
+    """
+
+    def __init__(self, messages: Iterable[Message], ring: Collection[str], damage: DamageList) -> None:
+        self._messages, self._ring, self._damage = messages, frozenset(ring), damage
+        self._held: deque[tuple[Message, bool]] = deque()
+        self._seen: set[tuple[str, str]] = set()
+        self._stamps: dict[str, tuple[float, float]] = {}
+        self._last: float | None = None
+        self.place = ""
+
+    def __iter__(self) -> Iterator[tuple[Message, bool]]:
+        now = 0.0
+        for chunk in Timeline(_Chunks(self), self._damage):
+            message, begins = self._held.popleft()
+            stands = chunk.t is None
+            if chunk.t is not None:
+                now = chunk.t
+            elif begins:
+                now = round(now + STEP_S, 9)
+            yield message._replace(t=now), stands
+
+    def chunks(self) -> Iterator[Chunk]:
+        """Yield a chunk in place of each message, and hold the message."""
+        for number, message in enumerate(self._messages):
+            self.place = f"{message.topic} at {message.t:.3f} s"
+            begins = self._begins(message)
+            self._held.append((message, begins))
+            passed_s = self._passed_s(message)
+            t = message.t if passed_s is None else Stepped(message.t, passed_s)
+            yield Chunk(t, ROBOT_TO_CLIENT, bytes(CYCLE_BYTES + 1 if begins else 0), number)
+
+    def _begins(self, message: Message) -> bool:
+        """Whether a cycle begins: a topic and frame come again."""
+        if message.topic not in self._ring:
+            return False
+        key = message.topic, getattr(getattr(message.body, "header", None), "frame_id", "")
+        if key in self._seen or not self._seen:
+            self._seen = {key}
+            return True
+        self._seen.add(key)
+        return False
+
+    def _passed_s(self, message: Message) -> float | None:
+        """Return what passed since the message before, by the stamps of its topic; None: the clock was not set."""
+        last, self._last = self._last, message.t
+        stamp_s, before = _stamp_of(message), self._stamps.get(message.topic)
+        if stamp_s is None:
+            return None
+        if before is None or message.t != before[0]:
+            self._stamps[message.topic] = message.t, stamp_s
+        if last is None or before is None or abs(last - before[0]) > DISORDER_S:
+            return None
+        passed_s = stamp_s - before[1]
+        is_ahead = message.t - before[0] - passed_s > SET_LEAST_S
+        if passed_s > 0 and (is_ahead or message.t < last - DISORDER_S):
+            return max(0.0, round(passed_s - (last - before[0]), 6))
+        return None
+
+
+class _Chunks:
+    """Chunks in place of messages, with the place of the last."""
+
+    def __init__(self, dated: Dated) -> None:
+        self._dated = dated
+
+    def __iter__(self) -> Iterator[Chunk]:
+        return self._dated.chunks()
+
+    @property
+    def place(self) -> str:
+        """Which message came last."""
+        return self._dated.place
+
+
+def _stamp_of(message: Message) -> float | None:
+    header = getattr(message.body, "header", None)
+    try:
+        return stamp_of(header) if header is not None else None
+    except Odd:
+        return None

@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: MIT
+"""In which order a bag's messages are read: by its clock, of one time as they were written.
+
+Where a topic's times fall the clock was set back, and what it says of the order is not true: there all are read as
+they were written. A bag in which one topic is written after the other has no such fall, and is read by its clock.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
+from itertools import chain
+from typing import Any, BinaryIO, Final
+
+from argus_tools.timeline import DISORDER_S
+
+_DISORDER_NS: Final = round(DISORDER_S * 1e9)
+_INDEX: Final = struct.Struct("<BQHI")
+_ENTRY: Final = struct.Struct("<QQ")
+
+Raw = tuple[Any, int, bytes]
+"""A message as `rosbags` gives it: connection, time in ns, data."""
+
+
+def falls(times: Iterable[tuple[Any, int]]) -> bool:
+    """Whether the times of any topic fall, of pairs of a topic and a time in ns in the order in which they are written.
+
+    >>> falls([("a", 0), ("a", 9_000_000_000), ("b", 0)]), falls([("a", 9_000_000_000), ("a", 0)])
+    (False, True)
+    """
+    newest: dict[Any, int] = {}
+    with suppress(Exception):  # of a damaged file, which is reported when its messages are read
+        for topic, t_ns in times:
+            if t_ns < newest.get(topic, t_ns) - _DISORDER_NS:
+                return True
+            newest[topic] = max(t_ns, newest.get(topic, t_ns))
+    return False
+
+
+def indexed(file: BinaryIO, chunks: Iterable[Any], channels: Iterable[int]) -> Iterator[tuple[int, int]]:
+    """Yield channel and time of what an MCAP file's index has of these, of each channel as it was written."""
+    wanted = set(channels)
+    for chunk in sorted(chunks, key=lambda one: int(one.chunk_start_offset)):
+        for channel, at in chunk.message_index_offsets.items():
+            if channel not in wanted:
+                continue
+            file.seek(at)
+            size = _INDEX.unpack(file.read(_INDEX.size))[-1]
+            entries = _ENTRY.iter_unpack(file.read(size))
+            yield from ((channel, t_ns) for t_ns, _ in sorted(entries, key=lambda entry: entry[1]))
+
+
+def of_bag1(reader: Any, connections: Sequence[Any]) -> Iterator[Raw]:
+    """Yield the messages of a ROS 1 bag."""
+    original = reader.indexes
+    entries = sorted(
+        chain.from_iterable(((one.id, entry) for entry in original[one.id]) for one in connections),
+        key=lambda pair: (pair[1].chunk_pos, pair[1].offset),
+    )
+    if not falls((number, entry.time) for number, entry in entries):
+        entries.sort(key=lambda pair: pair[1].time)
+    # The reader merges its connections' entries by time alone: it is given one list, and merges nothing.
+    reader.indexes = {number: [] for number in original} | {
+        connections[0].id: [entry for _, entry in entries]
+    }
+    given = reader.messages(connections)
+    try:
+        first = next(given, None)
+    finally:
+        reader.indexes = original
+    if first is not None:
+        yield first
+        yield from given
+
+
+def of_bag2(reader: Any, connections: Sequence[Any]) -> Iterator[Raw]:
+    """Yield the messages of a ROS 2 bag, of each of its files."""
+    for storage in getattr(reader.storage, "storages", [reader.storage]):
+        storage.messages = (_Database if hasattr(storage, "dbconn") else _Mcap)(storage).messages
+    yield from reader.messages(connections)
+
+
+class _Database:
+    """The messages of an SQLite file, in place of the method of the reader."""
+
+    def __init__(self, storage: Any) -> None:
+        self._storage = storage
+
+    def messages(self, connections: Sequence[Any], *_: object) -> Iterator[Raw]:
+        """Yield the messages of these connections."""
+        known = {one.id: one for one in connections}
+        marks = ",".join("?" * len(known))
+        where = f"FROM messages WHERE topic_id IN ({marks}) ORDER BY"
+        ask = self._storage.dbconn.execute
+        order = (
+            "rowid"
+            if falls(ask(f"SELECT topic_id, timestamp {where} rowid", tuple(known)))
+            else "timestamp, rowid"
+        )
+        for number, t_ns, data in ask(f"SELECT topic_id, timestamp, data {where} {order}", tuple(known)):
+            yield known[number], t_ns, data
+
+
+class _Mcap:
+    """The messages of an MCAP file, in place of the method of the reader, which is right but for falls."""
+
+    def __init__(self, storage: Any) -> None:
+        self._storage = storage
+        self._by_time = type(storage).messages
+
+    def messages(self, connections: Sequence[Any], *_: object) -> Iterator[Raw]:
+        """Yield the messages of these connections."""
+        storage = self._storage
+        if storage.chunks:
+            times = indexed(storage.bio, storage.chunks, [one.id for one in connections])
+        else:
+            times = ((one.id, t_ns) for one, t_ns, _ in storage.messages_scan(connections))
+        if falls(times):
+            yield from storage.messages_scan(connections)
+        else:
+            yield from self._by_time(storage, connections)
