@@ -8,6 +8,7 @@ import re
 import sqlite3
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
+from typing import Any
 
 import bags
 import pytest
@@ -34,6 +35,7 @@ CLOCKS: dict[str, tuple[Callable[[float], float], str]] = {
     "stands, set ahead": (lambda s: START + (SET_S if SET_S < s < 32 else s + 3600 * (s >= 32)), "s ahead"),
     "stands throughout": (lambda s: START, STANDS),
     "zero throughout": (lambda s: 0.0, STANDS),
+    "set ahead 3 s": (lambda s: START + s + 3 * (s > SET_S), "the clock is set 3 s ahead"),
     "set ahead an hour": (lambda s: START + s + 3600 * (s > SET_S), "the clock is set 3600 s ahead"),
     "set ahead 400 days": (
         lambda s: START + s + 400 * DAY_S * (s > SET_S),
@@ -108,6 +110,15 @@ def test_a_link_that_rests_is_lost(storage: str, tmp_path: Path) -> None:
     assert "set" not in done.stderr.decode(), done.stderr.decode()
 
 
+def test_a_recorder_that_is_late_does_not_set_its_clock(tmp_path: Path) -> None:
+    # What waited for 4 s comes at once, with stamps that go on.
+    def clock(s: float) -> float:
+        return START + (24.0 + s / 1000 if SET_S < s < 24 else s)
+
+    told = run("faults", written(tmp_path, "ros1", drive(clock))).stderr.decode()
+    assert not re.search("clock (falls|is set)", told), told
+
+
 @pytest.mark.parametrize("storage", FORMS)
 @pytest.mark.parametrize("clock", ["falls an hour", "whole seconds"])
 def test_every_command_has_the_corrected_times(clock: str, storage: str, tmp_path: Path) -> None:
@@ -141,7 +152,7 @@ def test_times_of_an_own_mcap_are_corrected(clock: str, tmp_path: Path) -> None:
     good, path = tmp_path / "good.mcap", tmp_path / "own.mcap"
     assert run("convert", written(tmp_path, "ros1", drive(CLOCKS["good"][0])), good).returncode == 0
     with good.open("rb") as source, path.open("wb") as target:
-        writer = Writer(target, chunk_size=2000)
+        writer: Any = Writer(target, chunk_size=2000)
         writer.start("ros2")
         channels: dict[int, int] = {}
         for schema, channel, message in make_reader(source).iter_messages(log_time_order=False):

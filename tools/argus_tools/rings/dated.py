@@ -14,8 +14,11 @@ from argus_tools.timeline import DISORDER_S, STANDS_BYTES, STANDS_CHUNKS, STEP_S
 
 CYCLE_BYTES: Final = STANDS_BYTES // STANDS_CHUNKS
 """As much counts a cycle of the ring to the timeline, whose messages are of no serial port."""
-SET_LEAST_S: Final = 10.0
+LATE_MOST_S: Final = 10.0
 """By more than this no recorder is late: a queue has some hundred messages."""
+JITTER_S: Final = 0.05
+PEEKED_MOST: Final = 200
+"""Among so many messages the next of a topic is looked for."""
 
 
 class Dated:
@@ -26,7 +29,8 @@ class Dated:
     """
 
     def __init__(self, messages: Iterable[Message], ring: Collection[str], damage: DamageList) -> None:
-        self._messages, self._ring, self._damage = messages, frozenset(ring), damage
+        self._messages, self._ring, self._damage = iter(messages), frozenset(ring), damage
+        self._peeked: deque[Message] = deque()
         self._held: deque[tuple[Message, bool]] = deque()
         self._seen: set[tuple[str, str]] = set()
         self._stamps: dict[str, tuple[float, float]] = {}
@@ -46,7 +50,7 @@ class Dated:
 
     def chunks(self) -> Iterator[Chunk]:
         """Yield a chunk in place of each message, and hold the message."""
-        for number, message in enumerate(self._messages):
+        for number, message in enumerate(self._coming()):
             self.place = f"{message.topic} at {message.t:.3f} s"
             begins = self._begins(message)
             self._held.append((message, begins))
@@ -76,10 +80,34 @@ class Dated:
         if last is None or before is None or abs(last - before[0]) > DISORDER_S:
             return None
         passed_s = stamp_s - before[1]
-        is_ahead = message.t - before[0] - passed_s > SET_LEAST_S
+        ahead_s = message.t - before[0] - passed_s
+        is_ahead = ahead_s > LATE_MOST_S or (ahead_s > DISORDER_S and self._goes_on(message, stamp_s))
         if passed_s > 0 and (is_ahead or message.t < last - DISORDER_S):
             return max(0.0, round(passed_s - (last - before[0]), 6))
         return None
+
+    def _coming(self) -> Iterator[Message]:
+        while True:
+            if self._peeked:
+                yield self._peeked.popleft()
+            elif (message := next(self._messages, None)) is not None:
+                yield message
+            else:
+                return
+
+    def _goes_on(self, message: Message, stamp_s: float) -> bool:
+        """Whether both clocks go on alike to the next of its topic; those that waited for a recorder come at once."""
+        for number in range(PEEKED_MOST):
+            if number == len(self._peeked):
+                following = next(self._messages, None)
+                if following is None:
+                    break
+                self._peeked.append(following)
+            other = self._peeked[number]
+            if other.topic == message.topic and (other_s := _stamp_of(other)) is not None:
+                passed_s = other_s - stamp_s
+                return abs(other.t - message.t - passed_s) < max(passed_s / 2, JITTER_S)
+        return False
 
 
 class _Chunks:
