@@ -15,7 +15,7 @@ from types import SimpleNamespace
 from typing import Any, Final, NamedTuple, Protocol
 
 from argus_tools.chunks import LogError
-from argus_tools.rings.written import falls, indexed, of_bag1, of_bag2
+from argus_tools.rings.written import falls, mcap_times, of_bag1, of_bag2
 from argus_tools.ros2_messages import SIP, read_sip
 
 _NANO: Final = 1_000_000_000
@@ -139,8 +139,6 @@ class OwnMcap:
                 f"{name}: an MCAP file without an index, as of a recorder that was killed: mcap recover FILE"
             )
         counts = summary.statistics.channel_message_counts
-        self._chunks = summary.chunk_indexes
-        self._channels = {number: channel.topic for number, channel in summary.channels.items()}
         self.topics = [
             Topic(channel.topic, summary.schemas[channel.schema_id].name, counts.get(number, 0))
             for number, channel in summary.channels.items()
@@ -152,7 +150,7 @@ class OwnMcap:
         """Yield the messages of these topics by their log time, if that does not fall."""
         wanted = list(topics)
         try:
-            by_time = not falls(self._times(wanted))
+            by_time = not falls(mcap_times(self._reader, self._file, wanted))
             for schema, channel, message in self._reader.iter_messages(wanted, log_time_order=by_time):
                 if schema is not None and schema.name == SIP:
                     fields = SimpleNamespace(**read_sip(message.data))
@@ -162,14 +160,6 @@ class OwnMcap:
                     yield Message(channel.topic, schema.name, message.log_time / _NANO, body)
         except Exception as error:
             raise Broken(_what(error)) from error
-
-    def _times(self, topics: list[str]) -> Iterator[tuple[Any, int]]:
-        """Yield channel and time of all messages, of each channel as they were written."""
-        if self._chunks:
-            channels = [number for number, topic in self._channels.items() if topic in topics]
-            return indexed(self._file, self._chunks, channels)
-        found = self._reader.iter_messages(topics, log_time_order=False)
-        return ((channel.id, message.log_time) for _, channel, message in found)
 
     def close(self) -> None:
         """Close the file."""

@@ -8,7 +8,7 @@ they were written. A bag in which one topic is written after the other has no su
 from __future__ import annotations
 
 import struct
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import suppress
 from itertools import chain
 from typing import Any, BinaryIO, Final
@@ -38,9 +38,18 @@ def falls(times: Iterable[tuple[Any, int]]) -> bool:
     return False
 
 
-def indexed(file: BinaryIO, chunks: Iterable[Any], channels: Iterable[int]) -> Iterator[tuple[int, int]]:
-    """Yield channel and time of what an MCAP file's index has of these, of each channel as it was written."""
-    wanted = set(channels)
+def mcap_times(reader: Any, file: BinaryIO, topics: Iterable[str]) -> Iterator[tuple[int, int]]:
+    """Yield channel and time of the messages of these topics, of each channel as they were written."""
+    wanted, summary = set(topics), reader.get_summary()
+    if summary is None or not summary.chunk_indexes:
+        found = reader.iter_messages(wanted, log_time_order=False)
+        yield from ((channel.id, message.log_time) for _, channel, message in found)
+        return
+    channels = {number for number, channel in summary.channels.items() if channel.topic in wanted}
+    yield from _indexed(file, summary.chunk_indexes, channels)
+
+
+def _indexed(file: BinaryIO, chunks: Iterable[Any], wanted: Collection[int]) -> Iterator[tuple[int, int]]:
     for chunk in sorted(chunks, key=lambda one: int(one.chunk_start_offset)):
         for channel, at in chunk.message_index_offsets.items():
             if channel not in wanted:
@@ -111,12 +120,15 @@ class _Mcap:
 
     def messages(self, connections: Sequence[Any], *_: object) -> Iterator[Raw]:
         """Yield the messages of these connections."""
-        storage = self._storage
-        if storage.chunks:
-            times = indexed(storage.bio, storage.chunks, [one.id for one in connections])
-        else:
-            times = ((one.id, t_ns) for one, t_ns, _ in storage.messages_scan(connections))
-        if falls(times):
-            yield from storage.messages_scan(connections)
-        else:
-            yield from self._by_time(storage, connections)
+        from mcap.reader import make_reader
+
+        known = {one.id: one for one in connections}
+        topics = {one.topic for one in connections}
+        with self._storage.path.open("rb") as file:
+            reader = make_reader(file)
+            if falls(mcap_times(reader, file, topics)):
+                for _schema, channel, message in reader.iter_messages(topics, log_time_order=False):
+                    if channel.id in known:
+                        yield known[channel.id], message.log_time, message.data
+                return
+        yield from self._by_time(self._storage, connections)
