@@ -86,12 +86,16 @@ class Timeline:
     many chunks the one before it had.
 
     chunks: a reader, whose attribute `place`, where it has one, says where in the file the chunk just given ends.
+    most: chunks that may come in a second; more are not waited for.
     """
 
-    def __init__(self, chunks: Iterable[Chunk], damage: DamageList, is_followed: bool = False) -> None:
+    def __init__(
+        self, chunks: Iterable[Chunk], damage: DamageList, is_followed: bool = False, most: int = SECOND_MOST
+    ) -> None:
         self._chunks = chunks
         self._is_followed = is_followed
         self._damage = damage
+        self._most = most
         self._add_s = 0.0
         self._before_s: float | None = None
         self._raw = 0.0
@@ -201,7 +205,7 @@ class Timeline:
                 self._stand(t)
                 yield from (one._replace(t=None) for one in held)
                 held = []
-            elif count == 1 or self._is_followed or len(held) == SECOND_MOST:
+            elif count == 1 or self._is_followed or len(held) == self._most:
                 yield from held
                 held = []
         yield from held
@@ -230,11 +234,12 @@ class Timeline:
         step_s: int | None = None
         for chunk in chunks:
             head.append(chunk)
-            if (step_s := _step_s(head)) is not None:
+            if (step_s := _step_s(head, self._most)) is not None:
                 break
-        if not step_s:
+        else:
             if len(head) > STANDS_CHUNKS and head[0].t == head[-1].t and _bytes(head) > ALL_BYTES:
                 self._stand(head[0].t)
+        if not step_s:
             yield from head
             yield from chunks
             return
@@ -249,7 +254,7 @@ class Timeline:
                 yield chunk
                 continue
             held.append(chunk)
-            if len(held) > SECOND_MOST * step_s:
+            if len(held) > self._most * step_s:
                 # More than a link carries: a clock that stands, of whose entries none is held.
                 self._report_standing(chunk.t)
                 yield from held
@@ -279,16 +284,16 @@ def _period(t: float, raw: float) -> float | None:
     )
 
 
-def _step_s(head: list[Chunk]) -> int | None:
+def _step_s(head: list[Chunk], most: int) -> int | None:
     """Return the whole seconds by which a clock steps, by a log's beginning; 0: it is finer; None: not known yet.
 
     It passes on by these, with several chunks in most of those that are over; the first may be cut.
     """
     last, first = head[-1].t, head[0].t
-    if last is None or first is None or len(head) > SECOND_MOST * STEP_MOST_S:
+    if last is None or first is None or len(head) > most * STEP_MOST_S:
         return 0
     if last == first:
-        return 0 if len(head) > SECOND_MOST and _bytes(head) > STANDS_BYTES else None
+        return 0 if len(head) > most and _bytes(head) > STANDS_BYTES else None
     if last != int(last):
         return 0
     if last == head[-2].t:

@@ -117,6 +117,23 @@ def test_a_second_that_never_ends_is_not_held() -> None:
     assert [entry.what for entry in damage if "stands at 11.0" in entry.what]
 
 
+def test_a_log_that_stands_long_at_first_begins_at_that_time() -> None:
+    # More than is waited for: the first keeps its time, so that what follows lasts from there.
+    given = [*[7.25] * (2 * SECOND_MOST), 99.5, 99.6]
+    chunks = [Chunk(t, ROBOT_TO_CLIENT, bytes(SIP_BYTES), 0) for t in given]
+    found = [chunk.t for chunk in Timeline(chunks, DamageList())]
+    assert found == [7.25, *[None] * (2 * SECOND_MOST - 1), 99.5, 99.6]
+
+
+@pytest.mark.parametrize("most", [SECOND_MOST, 3 * SECOND_MOST])
+def test_as_many_as_may_come_in_a_second_are_spread(most: int) -> None:
+    given = [float(t) for t in (7, 8, 9, 10, 11) for _ in range(2 * SECOND_MOST)]
+    chunks = [Chunk(t, ROBOT_TO_CLIENT, bytes(SIP_BYTES), 0) for t in given]
+    found = [chunk.t for chunk in Timeline(chunks, DamageList(), most=most)]
+    assert (None in found) is (most == SECOND_MOST)
+    assert len(set(found)) == (6 if most == SECOND_MOST else len(given))
+
+
 @pytest.mark.parametrize("is_followed", [False, True], ids=["file", "followed"])
 @pytest.mark.parametrize(
     ("before", "behind"), [([], []), ([5.1, 5.2, 5.3], []), ([5.1, 5.2], [99.5, 99.6]), ([5.0, 6.0], [])]

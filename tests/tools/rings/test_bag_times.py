@@ -99,6 +99,33 @@ def test_stamps_of_the_same_clock_change_nothing(clock: str, storage: str, tmp_p
     assert words in done.stderr.decode()
 
 
+def busy(clock: Callable[[float], float]) -> Iterator[Sent]:
+    """A topic a sonar, fired one after the other, with odometry and transforms at 50 Hz: 230 messages a second."""
+    for t, place, heading, ranges in DRIVE.steps:
+        for part in range(5):
+            s, way = t - START + part * 0.02, bags.SPEED_MM_S * part * 0.02
+            x, y = place[0] + way * math.cos(heading), place[1] + way * math.sin(heading)
+            yield bags.odometry(clock(s), (x, y), heading, stamp=START + s)
+            yield bags.transform(clock(s), "base_link", "odom", x / 1000, y / 1000, heading)
+            yield bags.transform(clock(s), "laser", "base_link", 0.1, 0.0, 0.0)
+            for k in range(part, 8, 5):
+                range_m = 0.7 if k == STUCK and s > STUCK_FROM_S else ranges[k] / 1000
+                yield bags.single(clock(s + 0.001), k, range_m, f"/us/{k}", f"us{k}", stamp=START + s)
+
+
+@pytest.mark.parametrize(
+    "clock",
+    ["good", "falls an hour", "stands, right again", "stands throughout", "whole seconds", "steps of 5 s"],
+)
+def test_many_messages_a_second_change_nothing(clock: str, tmp_path: Path) -> None:
+    done = run("faults", written(tmp_path, "ros1", busy(CLOCKS[clock][0])))
+    told = done.stdout.decode()
+    assert told.startswith(f"sonar/front/0{STUCK} disabled as stuck at "), told
+    assert re.search(r"7 of 8 sonars healthy in (399|400) SIPs over (39|40) s", told), told
+    assert "also:" not in told, told
+    assert CLOCKS[clock][1] in done.stderr.decode()
+
+
 @pytest.mark.parametrize("storage", FORMS)
 def test_a_link_that_rests_is_lost(storage: str, tmp_path: Path) -> None:
     # Stamps bear out what the recorder's clock says: nothing came for a minute.

@@ -14,6 +14,8 @@ from argus_tools.timeline import DISORDER_S, STANDS_BYTES, STANDS_CHUNKS, STEP_S
 
 CYCLE_BYTES: Final = STANDS_BYTES // STANDS_CHUNKS
 """As much counts a cycle of the ring to the timeline, whose messages are of no serial port."""
+SECOND_MOST: Final = 4000
+"""So many messages a second may come of a ring, its odometry and its transforms."""
 LATE_MOST_S: Final = 10.0
 """By more than this no recorder is late: a queue has some hundred messages."""
 JITTER_S: Final = 0.05
@@ -39,7 +41,7 @@ class Dated:
 
     def __iter__(self) -> Iterator[tuple[Message, bool]]:
         now = 0.0
-        for chunk in Timeline(_Chunks(self), self._damage):
+        for chunk in Timeline(_Chunks(self), self._damage, most=SECOND_MOST):
             message, begins = self._held.popleft()
             stands = chunk.t is None
             if chunk.t is not None:
