@@ -102,7 +102,8 @@ void argus_setup_sent(argus_setup_t *self, uint32_t now_ms, const uint8_t *packe
     for (int row = 0; row <= ARGUS_SETUP_HALT_TURN && sets_off(command, value); row++) {
         argus_setup_drop(self, (argus_setup_row_t)row); // it is to move again
     }
-    for (int row = 0; row < ARGUS_SETUP_ROWS; row++) {
+    // What sets the robot off is said once: a later stop may have overtaken it.
+    for (int row = 0; row < ARGUS_SETUP_ROWS && !sets_off(command, value); row++) {
         if (is_of_row((argus_setup_row_t)row, command, value)) {
             note(self, (argus_setup_row_t)row, now_ms, value);
         }
@@ -162,11 +163,6 @@ static bool is_at_origin(const argus_sip_t *sip) {
            argus_abs(sip->heading_raw) <= NEAR_ZERO_TURN;
 }
 
-// A speed other than 0 is a client's, who drives.
-static bool rests(const argus_sip_t *sip, int32_t value) {
-    return value != 0 || wheel_of(sip) <= REST_MM_S;
-}
-
 // Slower than its speed a robot may be for many reasons.
 static answer_t shows_speed(const argus_sip_t *sip, int32_t value) {
     return argus_abs(speed_of(sip) - value) <= value / 8 ? YES : UNTOLD;
@@ -184,9 +180,8 @@ static answer_t shown_by_sip(const argus_setup_t *self, argus_setup_row_t row, c
     const int32_t value = self->order[row].value;
     switch ((proof_t)proof_of[row]) {
     case SLOWING:
-        return says(wheel_of(sip) <= REST_MM_S);
     case REST:
-        return says(rests(sip, value));
+        return says(wheel_of(sip) <= REST_MM_S);
     case ORIGIN:
         return says(is_at_origin(sip));
     case SPEED:

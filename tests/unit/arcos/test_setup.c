@@ -98,6 +98,29 @@ void test_a_motion_ordered_since_ends_a_stop(void) {
 }
 
 // One that tells of no settings is not asked for ever.
+// Also while no SIP tells what became of it: a stop may have gone out since.
+void test_what_sets_the_robot_off_is_said_once(void) {
+    static const struct {
+        uint8_t command;
+        int16_t value;
+    } motions[] = {{ARCOS_CMD_VEL, 300}, {ARCOS_CMD_VEL, -1}, {ARCOS_CMD_RVEL, 119}, {ARCOS_CMD_RVEL, -1}};
+    for (unsigned i = 0; i < sizeof motions / sizeof motions[0]; i++) {
+        setUp();
+        send(motions[i].command, motions[i].value);
+        send(ARCOS_CMD_STOP, 0);
+        for (uint32_t t = 0; t < 20000; t += 10) {
+            uint8_t packet[ARGUS_PACKET_MAX];
+            now_ms += 10;
+            argus_setup_resend(&setup, &outbox, now_ms, ALL_ROWS);
+            for (size_t size; (size = argus_outbox_fetch(&outbox, packet, sizeof packet)) > 0;) {
+                argus_setup_sent(&setup, now_ms, packet, size);
+                TEST_ASSERT_NOT_EQUAL(motions[i].command, packet[3]);
+            }
+        }
+        TEST_ASSERT_TRUE(argus_setup_is_open(&setup, ARGUS_SETUP_STOP));
+    }
+}
+
 void test_what_the_robot_tells_nothing_of_is_sent_twice_more(void) {
     send(ARCOS_CMD_SETV, 300);
     TEST_ASSERT_EQUAL_INT(2, again(ARCOS_CMD_SETV, 60000));
