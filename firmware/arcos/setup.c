@@ -99,11 +99,14 @@ void argus_setup_sent(argus_setup_t *self, uint32_t now_ms, const uint8_t *packe
         note_polling(self, packet + VALUE_AT + 1, packet[VALUE_AT]);
         memset(self->listed, 0, sizeof self->listed);
     }
-    for (int row = 0; row <= ARGUS_SETUP_HALT_TURN && sets_off(command, value); row++) {
-        argus_setup_drop(self, (argus_setup_row_t)row); // it is to move again
+    // It is to move: no stop is due. And this is said once, as a stop may have overtaken it by then.
+    if (sets_off(command, value)) {
+        for (int row = 0; row <= ARGUS_SETUP_HALT_TURN; row++) {
+            argus_setup_drop(self, (argus_setup_row_t)row);
+        }
+        return;
     }
-    // What sets the robot off is said once: a later stop may have overtaken it.
-    for (int row = 0; row < ARGUS_SETUP_ROWS && !sets_off(command, value); row++) {
+    for (int row = 0; row < ARGUS_SETUP_ROWS; row++) {
         if (is_of_row((argus_setup_row_t)row, command, value)) {
             note(self, (argus_setup_row_t)row, now_ms, value);
         }
