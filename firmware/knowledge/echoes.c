@@ -242,36 +242,38 @@ int32_t argus_echoes_clear_mm(const argus_echoes_t *const self, const argus_know
     return clear;
 }
 
-bool argus_echoes_near(const argus_echoes_t *const self, const argus_knowledge_t *const knowledge,
-                       const int index, argus_point_t *const at) {
-    ARGUS_ASSERT(index >= 0 && index < self->count);
-    const argus_echo_t *const seen = &self->at[index];
-    if (!seen->again || knowledge->sip_ms - seen->seen_ms > LATELY_MS || !is_about(seen, knowledge)) {
+static bool place_since(const argus_echo_t *const seen, const argus_knowledge_t *const knowledge,
+                        const uint32_t counts_ms, argus_point_t *const at) {
+    ARGUS_ASSERT(counts_ms <= ARGUS_FORGET_MS);
+    if (knowledge->sip_ms - seen->seen_ms > counts_ms || !is_about(seen, knowledge)) {
         return false;
     }
     *at = place_of(seen, knowledge);
     return true;
 }
 
+static bool has_stood(const argus_echoes_t *const self, const argus_knowledge_t *const knowledge,
+                      const int index, argus_point_t *const at) {
+    ARGUS_ASSERT(index >= 0 && index < self->count);
+    return self->at[index].stands && place_since(&self->at[index], knowledge, ARGUS_FORGET_MS, at);
+}
+
+bool argus_echoes_near(const argus_echoes_t *const self, const argus_knowledge_t *const knowledge,
+                       const int index, argus_point_t *const at) {
+    ARGUS_ASSERT(index >= 0 && index < self->count);
+    return self->at[index].again && place_since(&self->at[index], knowledge, LATELY_MS, at);
+}
+
 bool argus_echoes_stands(const argus_echoes_t *const self, const argus_knowledge_t *const knowledge,
                          const int index, argus_point_t *const at) {
-    ARGUS_ASSERT(index >= 0 && index < self->count);
-    const argus_echo_t *const seen = &self->at[index];
-    if (argus_echoes_near(self, knowledge, index, at)) {
-        return true;
-    }
-    if (!seen->stands || knowledge->sip_ms - seen->seen_ms > ARGUS_FORGET_MS || !is_about(seen, knowledge)) {
-        return false;
-    }
-    *at = place_of(seen, knowledge);
-    return true;
+    return argus_echoes_near(self, knowledge, index, at) || has_stood(self, knowledge, index, at);
 }
 
 bool argus_echoes_beside(const argus_echoes_t *const self, const argus_knowledge_t *const knowledge,
                          const int index, argus_point_t *const at) {
     const argus_robot_t *const robot = knowledge->robot;
     return argus_echoes_near(self, knowledge, index, at) ||
-           (argus_echoes_stands(self, knowledge, index, at) && at->x_mm > -robot->rear_mm &&
+           (has_stood(self, knowledge, index, at) && at->x_mm > -robot->rear_mm &&
             at->x_mm < robot->front_mm);
 }
 

@@ -140,9 +140,10 @@ class Listener:
         while at < len(rows):
             alike, end = self._alike(rows, at)
             if len(alike) < _FEW_ROWS:
-                for number in range(at, max(end, at + 1)):
+                end = max(end, at + 1)
+                for number in range(at, end):
                     yield from ((number, said) for said in self.take(rows[number]))
-                at = max(end, at + 1)
+                at = end
                 continue
             taken = 0
             for number, said in self._feed_many([rows[n] for n in alike]):
