@@ -242,8 +242,8 @@ int32_t argus_echoes_clear_mm(const argus_echoes_t *const self, const argus_know
     return clear;
 }
 
-static bool place_since(const argus_echo_t *const seen, const argus_knowledge_t *const knowledge,
-                        const uint32_t counts_ms, argus_point_t *const at) {
+static inline bool place_since(const argus_echo_t *const seen, const argus_knowledge_t *const knowledge,
+                               const uint32_t counts_ms, argus_point_t *const at) {
     ARGUS_ASSERT(counts_ms <= ARGUS_FORGET_MS);
     if (knowledge->sip_ms - seen->seen_ms > counts_ms || !is_about(seen, knowledge)) {
         return false;
