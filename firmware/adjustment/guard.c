@@ -22,6 +22,7 @@
 #define NUDGE_CDEG 2000
 #define NUDGE_ROOM_MM 40 // an echo is anywhere in its cone: more than readings scatter
 #define NUDGE_PARTS 5
+#define ROUNDING_MM 3     // of a place that is turned, where the body is
 #define ABEAM_LEAST_MM 97 // beside a way straight back: a P3-DX ends 77 mm beside the faces of those abeam,
 #define ABEAM_SLANT \
     2 // ... and a smooth wall that slants in by 25 degrees, half of the way, is heard by no sonar
@@ -308,8 +309,19 @@ static nudge_t nudge_of(const int32_t by_cdeg) {
     return nudge;
 }
 
+// Farther from the centre than a corner of the body and its room: no turn brings the body there.
+static bool is_out_of_reach(const argus_robot_t *const robot, const argus_point_t at) {
+    const int32_t along_mm = argus_max(robot->front_mm, robot->rear_mm) + NUDGE_ROOM_MM;
+    const int32_t across_mm = argus_robot_half_width_mm(robot) + NUDGE_ROOM_MM;
+    return argus_square_of(at.x_mm, at.y_mm) >
+           argus_square_of(along_mm + ROUNDING_MM, across_mm + ROUNDING_MM);
+}
+
 // Turned so far, the body comes too near to a point, which is given in the robot's frame of now.
 static bool is_swept(const argus_robot_t *const robot, const argus_point_t at, const nudge_t *const nudge) {
+    if (is_out_of_reach(robot, at)) {
+        return false;
+    }
     for (int i = 0; i < NUDGE_PARTS; i++) {
         const int32_t x_mm = (at.x_mm * nudge->c[i] + at.y_mm * nudge->s[i]) / ARGUS_TRIG_ONE;
         const int32_t y_mm = (at.y_mm * nudge->c[i] - at.x_mm * nudge->s[i]) / ARGUS_TRIG_ONE;
@@ -342,10 +354,10 @@ static bool is_touched_in_nudge(const argus_guard_t *const self, const nudge_t *
 }
 
 static bool is_remembered_in_nudge(const argus_guard_t *const self, const nudge_t *const nudge) {
+    const argus_view_t from = argus_view(self->knowledge);
     for (int i = 0; i < self->echoes->count; i++) {
         argus_point_t at;
-        if (argus_echoes_beside(self->echoes, self->knowledge, i, &at) &&
-            is_swept(self->knowledge->robot, at, nudge)) {
+        if (argus_echoes_beside(self->echoes, &from, i, &at) && is_swept(self->knowledge->robot, at, nudge)) {
             return true;
         }
     }

@@ -59,9 +59,10 @@ static bool meets_echo(const argus_knowledge_t *const knowledge, const int32_t b
 
 static bool meets_memory(const argus_knowledge_t *const knowledge, const argus_echoes_t *const echoes,
                          const int32_t by_cdeg) {
+    const argus_view_t from = argus_view(knowledge);
     for (int i = 0; i < echoes->count; i++) {
         argus_point_t at;
-        if (argus_echoes_stands(echoes, knowledge, i, &at) && is_met(knowledge->robot, at, by_cdeg)) {
+        if (argus_echoes_stands(echoes, &from, i, &at) && is_met(knowledge->robot, at, by_cdeg)) {
             return true;
         }
     }

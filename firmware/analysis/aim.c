@@ -24,6 +24,13 @@ static bool has_looked(const argus_pings_t *const pings, const argus_ping_t *con
     return false;
 }
 
+// An echo that another lately heard at a range that tells, on a bearing that takes a turn to look along.
+static bool is_worth_a_turn(const argus_ping_t *const then, const int32_t turn_cdeg, const uint32_t now_ms) {
+    return then->reading_mm >= AIM_NEAREST_MM &&
+           then->reading_mm <= ARGUS_FARTHEST_MM - ARGUS_SAME_ALONG_MM && turn_cdeg >= ARGUS_SAME_CDEG &&
+           turn_cdeg <= AIM_TURN_CDEG && argus_ping_age_ms(then, now_ms) <= ARGUS_BESIDE_MS;
+}
+
 // What it costs to look along the bearing of a ping of another, in hundredths of a degree of turn; INT32_MAX:
 // it is no use.
 static int32_t cost_of_aim(const argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
@@ -32,13 +39,12 @@ static int32_t cost_of_aim(const argus_evidence_t *const self, const argus_knowl
     const argus_sonar_pose_t mount = argus_robot_pose(knowledge->robot, sonar);
     argus_pose_t turned = knowledge->pose;
     turned.heading_cdeg = argus_angle_wrap(then->bearing_cdeg - mount.heading_deg * 100);
-    const argus_ping_t there = argus_ping_from(knowledge->robot, sonar, &turned);
     const int32_t turn = argus_angle_abs_diff(turned.heading_cdeg, knowledge->pose.heading_cdeg);
-    const bool telling = then->reading_mm >= AIM_NEAREST_MM &&
-                         then->reading_mm <= ARGUS_FARTHEST_MM - ARGUS_SAME_ALONG_MM &&
-                         turn >= ARGUS_SAME_CDEG && turn <= AIM_TURN_CDEG &&
-                         argus_ping_age_ms(then, knowledge->sip_ms) <= ARGUS_BESIDE_MS &&
-                         argus_ping_is_within(&there, then, ARGUS_SAME_ALONG_MM) &&
+    if (!is_worth_a_turn(then, turn, knowledge->sip_ms)) {
+        return INT32_MAX;
+    }
+    const argus_ping_t there = argus_ping_from(knowledge->robot, sonar, &turned);
+    const bool telling = argus_ping_is_within(&there, then, ARGUS_SAME_ALONG_MM) &&
                          argus_ping_shift(&there, then).lateral_mm <= ARGUS_SAME_LATERAL_MM &&
                          !has_looked(&self->pings[sonar], &there, knowledge->sip_ms);
     return telling ? turn + then->reading_mm : INT32_MAX;

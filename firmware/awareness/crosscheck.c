@@ -102,17 +102,25 @@ static bool is_mute(const argus_evidence_t *const self, const int sonar, const a
 static verdict_t answer(const argus_line_t *const line, const argus_ping_t *const then,
                         const int32_t along_mm, const bool sector) {
     const verdict_t said = compare(line->ping->reading_mm, then->reading_mm, along_mm);
-    return sector && argus_ping_is_echo(line->ping) && said == CONTRADICTED ? UNSEEN : said;
+    return said == CONTRADICTED && sector && argus_ping_is_echo(line->ping) ? UNSEEN : said;
 }
 
-// One other sonar: its latest ping on the bearing decides. How far back that is, 0: it did not look there.
+// One of the last seconds may excuse. True: older pings of this sonar can add nothing any more, as an excuse
+// counts once, and only where nobody agrees.
+static bool excuse(tally_t *const tally, const verdict_t said, const bool lately) {
+    tally->excused = tally->excused || (lately && (said == AGREED || said == QUIET));
+    return tally->excused || tally->agree > 0 || !lately;
+}
+
+// One other sonar, by its pings `beside` the line: its latest one on the bearing decides. How far back that
+// is, 0: it did not look there.
 static int ask(const argus_evidence_t *const self, tally_t *const tally, const argus_line_t *const line,
-               const int from, const argus_knowledge_t *const knowledge) {
+               const int from, const uint32_t beside, const argus_knowledge_t *const knowledge) {
     ARGUS_ASSERT(from >= 0 && from < ARGUS_SONARS);
     const argus_pings_t *const pings = &self->pings[from];
     const argus_ping_t *const at = line->ping;
     const bool sector = argus_robot_is_sector(knowledge->robot, from);
-    uint32_t left = argus_pings_beside(pings, line);
+    uint32_t left = beside;
     int latest = 0;
     for (int back = argus_pings_near(pings, &left, line); back > 0;
          back = argus_pings_near(pings, &left, line)) {
@@ -127,7 +135,9 @@ static int ask(const argus_evidence_t *const self, tally_t *const tally, const a
             add(tally, said, from, argus_ping_is_echo(then));
         }
         const bool lately = argus_ping_age_ms(then, knowledge->sip_ms) <= ARGUS_BESIDE_MS;
-        tally->excused = tally->excused || (lately && (said == AGREED || said == QUIET));
+        if (excuse(tally, said, lately) && latest > 0) {
+            break;
+        }
     }
     return latest;
 }
@@ -139,9 +149,9 @@ static tally_t ask_all(const argus_evidence_t *const self, const argus_knowledge
     const argus_line_t line = argus_ping_line(at);
     tally_t tally = {.agree = 0};
     for (int i = 0; i < knowledge->sonars; i++) {
-        if (argus_pings_beside(&self->pings[i], &line) != 0 &&
-            argus_crosscheck_is_witness(self, knowledge, i, sonar)) {
-            ask(self, &tally, &line, i, knowledge);
+        const uint32_t beside = argus_pings_beside(&self->pings[i], &line);
+        if (beside != 0 && argus_crosscheck_is_witness(self, knowledge, i, sonar)) {
+            ask(self, &tally, &line, i, beside, knowledge);
         }
     }
     return tally;
@@ -473,10 +483,11 @@ void argus_crosscheck_take(argus_evidence_t *const self, const argus_knowledge_t
     uint8_t latest[ARGUS_SONARS] = {0};
     tally_t tally = {.agree = 0};
     for (int i = 0; i < knowledge->sonars; i++) {
-        tally_t unheard = {.agree = 0};
-        const bool witness = argus_crosscheck_is_witness(self, knowledge, i, sonar);
-        if (i != sonar) {
-            latest[i] = (uint8_t)ask(self, witness ? &tally : &unheard, &line, i, knowledge);
+        const uint32_t beside = i != sonar ? argus_pings_beside(&self->pings[i], &line) : 0;
+        if (beside != 0) {
+            tally_t unheard = {.excused = true}; // where it looked is asked, not what it says
+            const bool witness = argus_crosscheck_is_witness(self, knowledge, i, sonar);
+            latest[i] = (uint8_t)ask(self, witness ? &tally : &unheard, &line, i, beside, knowledge);
         }
     }
     ask_laser(knowledge, sonar, now, &tally);

@@ -71,8 +71,11 @@ argus_shift_t argus_line_shift(const argus_line_t *line, const argus_ping_t *the
 static inline uint32_t argus_pings_beside(const argus_pings_t *const self, const argus_line_t *const line) {
     _Static_assert(ARGUS_PINGS == 32, "a bit for each");
     const uint32_t slots = self->looked[line->sector[0]] | self->looked[line->sector[1]];
+    if (slots == 0 || self->count == 0) {
+        return 0;
+    }
     const uint32_t all = slots >> self->next | slots << (ARGUS_PINGS - self->next) % ARGUS_PINGS;
-    return self->count > 0 ? all & UINT32_MAX << (ARGUS_PINGS - self->count) : 0;
+    return all & UINT32_MAX << (ARGUS_PINGS - self->count);
 }
 
 // The last of them that is on the bearing of the line or beside it (BESIDE_CDEG), and from about its place

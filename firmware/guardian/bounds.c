@@ -104,10 +104,11 @@ static int32_t clear_mm(const argus_knowledge_t *const knowledge, const unsigned
 // What was heard twice a moment ago and has left the cones is still there.
 static int32_t remembered_mm(const argus_t *const self, const corridor_t *const way) {
     const argus_robot_t *const robot = self->knowledge.robot;
+    const argus_view_t from = argus_view(&self->knowledge);
     int32_t nearest_mm = TRUST_MM;
     for (int i = 0; i < self->echoes.count; i++) {
         argus_point_t at;
-        if (argus_echoes_near(&self->echoes, &self->knowledge, i, &at) &&
+        if (argus_echoes_near(&self->echoes, &from, i, &at) &&
             argus_abs(at.y_mm) <= way->half_mm) {
             const int32_t free_mm = way->rear ? -at.x_mm - robot->rear_mm : at.x_mm - robot->front_mm;
             nearest_mm = free_mm >= 0 ? argus_min(nearest_mm, free_mm) : nearest_mm;

@@ -33,7 +33,8 @@ int32_t argus_sin(const int32_t cdeg) {
 }
 
 int32_t argus_cos(const int32_t cdeg) {
-    return argus_sin(argus_angle_wrap(cdeg) + QUARTER);
+    const int32_t size = argus_abs(argus_angle_wrap(cdeg));
+    return size > QUARTER ? -quarter_sine(size - QUARTER) : quarter_sine(QUARTER - size);
 }
 
 argus_point_t argus_in_frame(const argus_point_t at, const int32_t cdeg) {
@@ -88,8 +89,12 @@ uint32_t argus_sqrt(const uint32_t value) {
     return root;
 }
 
-int32_t argus_hypot(const int32_t x, const int32_t y) {
+uint32_t argus_square_of(const int32_t x, const int32_t y) {
     const uint32_t ax = (uint32_t)argus_min(argus_abs(x), 46000);
     const uint32_t ay = (uint32_t)argus_min(argus_abs(y), 46000);
-    return (int32_t)argus_sqrt(ax * ax + ay * ay);
+    return ax * ax + ay * ay;
+}
+
+int32_t argus_hypot(const int32_t x, const int32_t y) {
+    return (int32_t)argus_sqrt(argus_square_of(x, y));
 }

@@ -74,7 +74,8 @@ int32_t argus_atan2(int32_t y, int32_t x);
 // Floor of the square root.
 uint32_t argus_sqrt(uint32_t value);
 
-// Length of (x, y), |x|, |y| <= 40,000.
+// Length of (x, y), |x|, |y| <= 40,000; and its square, of which the root is that.
 int32_t argus_hypot(int32_t x, int32_t y);
+uint32_t argus_square_of(int32_t x, int32_t y);
 
 #endif

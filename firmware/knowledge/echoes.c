@@ -109,14 +109,17 @@ static void mark_touches(argus_echoes_t *const self) {
     }
 }
 
-static bool is_about(const argus_echo_t *const seen, const argus_knowledge_t *const knowledge) {
-    return argus_abs(seen->x_mm - knowledge->pose.x_mm) < ABOUT_MM &&
-           argus_abs(seen->y_mm - knowledge->pose.y_mm) < ABOUT_MM;
+argus_view_t argus_view(const argus_knowledge_t *const knowledge) {
+    return (argus_view_t){argus_frame_at(&knowledge->pose), knowledge};
 }
 
-static argus_point_t place_of(const argus_echo_t *const seen, const argus_knowledge_t *const knowledge) {
-    const argus_point_t off = {seen->x_mm - knowledge->pose.x_mm, seen->y_mm - knowledge->pose.y_mm};
-    return argus_in_frame(off, knowledge->pose.heading_cdeg);
+static bool is_about(const argus_echo_t *const seen, const argus_view_t *const from) {
+    return argus_abs(seen->x_mm - from->robot.at.x_mm) < ABOUT_MM &&
+           argus_abs(seen->y_mm - from->robot.at.y_mm) < ABOUT_MM;
+}
+
+static argus_point_t place_of(const argus_echo_t *const seen, const argus_view_t *const from) {
+    return argus_into_frame(&from->robot, (argus_point_t){seen->x_mm, seen->y_mm});
 }
 
 // The place, robot frame, is in the cone of this sonar, and it hears something farther off. Silence is no
@@ -153,10 +156,11 @@ static argus_mask_t telling(const argus_knowledge_t *const knowledge) {
 static void hear_past(argus_echoes_t *const self, const argus_knowledge_t *const knowledge,
                       const argus_mask_t sonars) {
     ARGUS_ASSERT(self->count <= ARGUS_POINTS_MAX);
+    const argus_view_t from = argus_view(knowledge);
     for (uint16_t i = 0; i < self->count && sonars != 0; i++) {
         argus_echo_t *const seen = &self->at[i];
-        if (seen->stands && is_about(seen, knowledge)) {
-            seen->stands = !is_heard_past(knowledge, sonars, place_of(seen, knowledge));
+        if (seen->stands && is_about(seen, &from)) {
+            seen->stands = !is_heard_past(knowledge, sonars, place_of(seen, &from));
         }
     }
 }
@@ -242,62 +246,64 @@ int32_t argus_echoes_clear_mm(const argus_echoes_t *const self, const argus_know
     return clear;
 }
 
-static inline bool place_since(const argus_echo_t *const seen, const argus_knowledge_t *const knowledge,
+static inline bool place_since(const argus_echo_t *const seen, const argus_view_t *const from,
                                const uint32_t counts_ms, argus_point_t *const at) {
     ARGUS_ASSERT(counts_ms <= ARGUS_FORGET_MS);
-    if (knowledge->sip_ms - seen->seen_ms > counts_ms || !is_about(seen, knowledge)) {
+    if (from->knowledge->sip_ms - seen->seen_ms > counts_ms || !is_about(seen, from)) {
         return false;
     }
-    *at = place_of(seen, knowledge);
+    *at = place_of(seen, from);
     return true;
 }
 
-static bool has_stood(const argus_echoes_t *const self, const argus_knowledge_t *const knowledge,
-                      const int index, argus_point_t *const at) {
+static bool has_stood(const argus_echoes_t *const self, const argus_view_t *const from, const int index,
+                      argus_point_t *const at) {
     ARGUS_ASSERT(index >= 0 && index < self->count);
-    return self->at[index].stands && place_since(&self->at[index], knowledge, ARGUS_FORGET_MS, at);
+    return self->at[index].stands && place_since(&self->at[index], from, ARGUS_FORGET_MS, at);
 }
 
-bool argus_echoes_near(const argus_echoes_t *const self, const argus_knowledge_t *const knowledge,
-                       const int index, argus_point_t *const at) {
+bool argus_echoes_near(const argus_echoes_t *const self, const argus_view_t *const from, const int index,
+                       argus_point_t *const at) {
     ARGUS_ASSERT(index >= 0 && index < self->count);
-    return self->at[index].again && place_since(&self->at[index], knowledge, LATELY_MS, at);
+    return self->at[index].again && place_since(&self->at[index], from, LATELY_MS, at);
 }
 
-bool argus_echoes_stands(const argus_echoes_t *const self, const argus_knowledge_t *const knowledge,
-                         const int index, argus_point_t *const at) {
-    return argus_echoes_near(self, knowledge, index, at) || has_stood(self, knowledge, index, at);
+bool argus_echoes_stands(const argus_echoes_t *const self, const argus_view_t *const from, const int index,
+                         argus_point_t *const at) {
+    return argus_echoes_near(self, from, index, at) || has_stood(self, from, index, at);
 }
 
-bool argus_echoes_beside(const argus_echoes_t *const self, const argus_knowledge_t *const knowledge,
-                         const int index, argus_point_t *const at) {
-    const argus_robot_t *const robot = knowledge->robot;
-    return argus_echoes_near(self, knowledge, index, at) ||
-           (has_stood(self, knowledge, index, at) && at->x_mm > -robot->rear_mm &&
-            at->x_mm < robot->front_mm);
+bool argus_echoes_beside(const argus_echoes_t *const self, const argus_view_t *const from, const int index,
+                         argus_point_t *const at) {
+    const argus_robot_t *const robot = from->knowledge->robot;
+    return argus_echoes_near(self, from, index, at) ||
+           (has_stood(self, from, index, at) && at->x_mm > -robot->rear_mm && at->x_mm < robot->front_mm);
 }
 
 int32_t argus_echoes_nearest_mm(const argus_echoes_t *const self, const argus_knowledge_t *const knowledge,
                                 const int32_t back_mm) {
     ARGUS_ASSERT(back_mm >= 0 && self->count <= ARGUS_POINTS_MAX);
-    int32_t nearest = argus_touches_nearest_mm(&self->touches, knowledge, back_mm);
+    const argus_view_t from = argus_view(knowledge);
+    const int32_t touched_mm = argus_touches_nearest_mm(&self->touches, knowledge, back_mm);
+    uint32_t least = UINT32_MAX;
     for (int i = 0; i < self->count; i++) {
         argus_point_t at;
-        if (argus_echoes_beside(self, knowledge, i, &at)) {
-            nearest = argus_min(nearest, argus_hypot(at.x_mm + back_mm, at.y_mm));
+        if (argus_echoes_beside(self, &from, i, &at)) {
+            const uint32_t square = argus_square_of(at.x_mm + back_mm, at.y_mm);
+            least = square < least ? square : least;
         }
     }
-    return nearest;
+    return least == UINT32_MAX ? touched_mm : argus_min(touched_mm, (int32_t)argus_sqrt(least));
 }
 
 int32_t argus_echoes_ahead_mm(const argus_echoes_t *const self, const argus_knowledge_t *const knowledge,
                               const int32_t half_mm) {
     ARGUS_ASSERT(half_mm > 0 && self->count <= ARGUS_POINTS_MAX);
+    const argus_view_t from = argus_view(knowledge);
     int32_t nearest = INT32_MAX;
     for (int i = 0; i < self->count; i++) {
         argus_point_t at;
-        if (argus_echoes_near(self, knowledge, i, &at) && at.x_mm > BEHIND_MM &&
-            argus_abs(at.y_mm) < half_mm) {
+        if (argus_echoes_near(self, &from, i, &at) && at.x_mm > BEHIND_MM && argus_abs(at.y_mm) < half_mm) {
             nearest = argus_min(nearest, at.x_mm);
         }
     }

@@ -63,16 +63,20 @@ bool argus_are_one_thing(argus_point_t a, argus_point_t b);
 bool argus_echoes_have_seen(const argus_echoes_t *self, const argus_knowledge_t *knowledge, argus_point_t at,
                             int32_t within_mm);
 
+// Where the robot stands now: worked out once for all echoes.
+typedef struct {
+    argus_frame_t robot;
+    const argus_knowledge_t *knowledge;
+} argus_view_t;
+argus_view_t argus_view(const argus_knowledge_t *knowledge);
+
 // Whether this one was seen more than once, lately and near the robot; where, robot frame. 0 <= index <
 // count. `beside`, what a turn is asked of: also one of the last minute that no sonar has heard past since.
 // What stands between two cones does not go away because none looks there. `stands`, what the body itself is
 // asked of: such a one wherever it lies, as the sonar that looks there may be out.
-bool argus_echoes_near(const argus_echoes_t *self, const argus_knowledge_t *knowledge, int index,
-                       argus_point_t *at);
-bool argus_echoes_beside(const argus_echoes_t *self, const argus_knowledge_t *knowledge, int index,
-                         argus_point_t *at);
-bool argus_echoes_stands(const argus_echoes_t *self, const argus_knowledge_t *knowledge, int index,
-                         argus_point_t *at);
+bool argus_echoes_near(const argus_echoes_t *self, const argus_view_t *from, int index, argus_point_t *at);
+bool argus_echoes_beside(const argus_echoes_t *self, const argus_view_t *from, int index, argus_point_t *at);
+bool argus_echoes_stands(const argus_echoes_t *self, const argus_view_t *from, int index, argus_point_t *at);
 
 // The distance of what would be nearest to the robot's centre, were it `back_mm` farther back. What was seen
 // more than once in the last seconds counts, also where no sonar sees it now. INT32_MAX: nothing. Cost: one

@@ -511,6 +511,12 @@ argus_point_t argus_from_frame(const argus_frame_t *const frame, const argus_poi
     return (argus_point_t){frame->at.x_mm + x / ARGUS_TRIG_ONE, frame->at.y_mm + y / ARGUS_TRIG_ONE};
 }
 
+argus_point_t argus_into_frame(const argus_frame_t *const frame, const argus_point_t point) {
+    const argus_point_t off = {point.x_mm - frame->at.x_mm, point.y_mm - frame->at.y_mm};
+    return (argus_point_t){(off.x_mm * frame->cos + off.y_mm * frame->sin) / ARGUS_TRIG_ONE,
+                           (off.y_mm * frame->cos - off.x_mm * frame->sin) / ARGUS_TRIG_ONE};
+}
+
 argus_point_t argus_to_course(const argus_pose_t *const pose, const argus_point_t robot) {
     const argus_frame_t frame = argus_frame_at(pose);
     return argus_from_frame(&frame, robot);

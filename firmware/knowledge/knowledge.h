@@ -182,6 +182,7 @@ typedef struct {
 } argus_frame_t;
 argus_frame_t argus_frame_at(const argus_pose_t *pose);
 argus_point_t argus_from_frame(const argus_frame_t *frame, argus_point_t point);
+argus_point_t argus_into_frame(const argus_frame_t *frame, argus_point_t point); // at most 60,000 mm off
 
 // From the echo of this sonar to the robot's centre, mm, were the robot `back_mm` farther back; INT32_MAX
 // when it is DISABLED or reads 5000. The nearest of all.

@@ -86,7 +86,7 @@ static bool shows(const argus_ray_t *const ray, const argus_point_t at) {
 
 static const argus_ray_t *ray_at(const argus_rays_t *const self, const int back) {
     ARGUS_ASSERT(back >= 1 && back <= ARGUS_RAYS_MAX);
-    return &self->at[(self->next + ARGUS_RAYS_MAX - back) % ARGUS_RAYS_MAX];
+    return &self->at[((unsigned)self->next + ARGUS_RAYS_MAX - (unsigned)back) % ARGUS_RAYS_MAX];
 }
 
 // How many rays count, from the newest to the last before one that is too old.
@@ -103,27 +103,35 @@ static int count_lately(const argus_rays_t *const self, const uint32_t now_ms) {
 // The first of `count` rays that shows a place, the newest first: it is likeliest. NULL: none.
 static const argus_ray_t *seen_by(const argus_rays_t *const self, const int count, const argus_point_t at) {
     for (int back = 1; back <= count; back++) {
-        if (shows(ray_at(self, back), at)) {
-            return ray_at(self, back);
+        const argus_ray_t *const ray = ray_at(self, back);
+        if (shows(ray, at)) {
+            return ray;
         }
     }
     return NULL;
 }
 
-// Seven places abreast. `by`: for each of them what showed the last one, which mostly shows this one, too.
+static bool is_shown(const argus_ray_t *const by, const argus_point_t at) {
+    return by != NULL && shows(by, at);
+}
+
+// Seven places abreast. `by`: for each of them what showed the last one, which mostly shows this one, too;
+// what showed its neighbour is the next likeliest.
 static bool is_line_seen(const argus_rays_t *const self, const int count, const argus_frame_t *const robot,
                          const argus_point_t edge, const argus_ray_t *by[]) {
     ARGUS_ASSERT(edge.y_mm > 0);
+    const argus_ray_t *beside = NULL;
     for (int k = -ABREAST; k <= ABREAST; k++) {
         const argus_point_t place = {edge.x_mm, edge.y_mm * k / ABREAST};
         const argus_point_t at = argus_from_frame(robot, place);
         const argus_ray_t **const last = &by[k + ABREAST];
-        if (*last == NULL || !shows(*last, at)) {
-            *last = seen_by(self, count, at);
+        if (!is_shown(*last, at)) {
+            *last = is_shown(beside, at) ? beside : seen_by(self, count, at);
         }
         if (*last == NULL) {
             return false;
         }
+        beside = *last;
     }
     return true;
 }

@@ -10,11 +10,14 @@
 #define CELL_MM ARGUS_GRID_CELL_MM
 #define LABELS ARGUS_WAVE_LABELS
 #define PLANES ARGUS_WAVE_PLANES
+#define MEMORY ARGUS_WAVE_MEMORY
 #define WIDE_ROOM_MM 50 // beside the swing circle: room to turn anywhere (S7 wants 20 under `argus`)
 #define NARROW_ROOM_MM \
     110 // beside the body: what a sonar at 50 degrees stops at, for an object range of 250 mm
 #define TIGHT_MM 200
 #define NARROW_STEPS 5 // that the wave takes to a cell where there is no room to turn; 1 to others
+#define RIPE_STEPS (NARROW_STEPS + 1)
+#define NO_ROW (-2)
 #define STEPS_MAX 1000
 #define ROW_WORK 1   // a row that is not at rest,
 #define SLOW_WORK 5  // ... and one where it is narrow,
@@ -23,7 +26,7 @@
 #define FAR_MOST 40000
 #define AHEAD_OF_BODY_MM 100
 
-_Static_assert(ARGUS_WAVE_MEMORY > NARROW_STEPS + 2, "what is at rest has nothing on its way any more");
+_Static_assert(MEMORY > RIPE_STEPS + 1, "what is at rest has nothing on its way any more");
 
 static uint64_t bit(const int32_t x) {
     ARGUS_ASSERT(x >= 0 && x < CELLS);
@@ -143,25 +146,10 @@ static unsigned label_at(const int32_t step) {
     return 1u + (unsigned)step % LABELS;
 }
 
-// What it reached too short a time ago to get on from there where it is narrow.
-static uint64_t young(const argus_wave_t *const self, const int y) {
-    ARGUS_ASSERT(y >= 0 && y < CELLS);
-    uint64_t any = 0;
-    for (int ago = 1; ago < NARROW_STEPS; ago++) {
-        const unsigned label = label_at(self->step + LABELS - ago);
-        uint64_t row = ~(uint64_t)0;
-        for (unsigned i = 0; i < PLANES; i++) {
-            row &= (label >> i & 1u) != 0 ? self->label[i][y] : ~self->label[i][y];
-        }
-        any |= row;
-    }
-    return any;
-}
-
 static void come_to(argus_wave_t *const self, const int y, const uint64_t cells) {
     ARGUS_ASSERT(y >= 0 && y < CELLS);
     self->reached[y] |= cells;
-    self->moved[self->step % ARGUS_WAVE_MEMORY] |= bit(y);
+    self->moved[self->step % MEMORY] |= bit(y);
     uint64_t *row = &self->label[0][y];
     for (unsigned rest = label_at(self->step); rest != 0; rest >>= 1) {
         *row |= (rest & 1u) != 0 ? cells : 0;
@@ -184,67 +172,90 @@ static uint64_t beside(const uint64_t row, const uint64_t others, const bool cor
     return others | row | across << 1 | across >> 1;
 }
 
-// Of the rows about one, what the wave reached long enough ago to get on where it is narrow. Up to three rows
-// ask for each.
-typedef struct {
-    uint64_t cells[3];
-    uint64_t fresh_below;
-    int row[3];
-} ripe_t;
-
-static uint64_t ripened(ripe_t *const ripe, const argus_wave_t *const self, const int y) {
-    ARGUS_ASSERT(y >= -1 && y <= CELLS);
-    if (y < 0 || y >= CELLS) {
-        return 0;
-    }
-    const int slot = y % 3;
-    if (ripe->row[slot] != y) {
-        ripe->row[slot] = y;
-        ripe->cells[slot] = self->reached[y] & ~young(self, y);
-    }
-    return ripe->cells[slot];
+// The rows that a step brought new cells, so many steps ago.
+static uint64_t moved(const argus_wave_t *const self, const int ago) {
+    ARGUS_ASSERT(ago >= 0 && ago < MEMORY);
+    return self->moved[(self->step + MEMORY - ago) % MEMORY];
 }
 
-// The cells of a row where it is narrow that the wave comes to, of those next to what it has reached. Of the
-// row below counts what was there before this step.
-static uint64_t come_slowly(const argus_wave_t *const self, ripe_t *const ripe, const int y,
+static uint64_t labelled(const argus_wave_t *const self, const int y, const unsigned label) {
+    ARGUS_ASSERT(y >= 0 && y < CELLS);
+    uint64_t row = ~(uint64_t)0;
+    for (unsigned i = 0; i < PLANES; i++) {
+        row &= (label >> i & 1u) != 0 ? self->label[i][y] : ~self->label[i][y];
+    }
+    return row;
+}
+
+// Of a row the cells from which the wave gets on now where it is narrow. Those before them have got on. As
+// corners count in every other step only, a cell brings the last ones a step after the first.
+static uint64_t ripe(const argus_wave_t *const self, const int y) {
+    uint64_t cells = 0;
+    for (int ago = NARROW_STEPS; ago <= RIPE_STEPS && y >= 0 && y < CELLS; ago++) {
+        const bool any = (moved(self, ago) & bit(y)) != 0;
+        cells |= any ? labelled(self, y, label_at(self->step + LABELS - ago)) : 0;
+    }
+    return cells;
+}
+
+// What one step does to the rows, from the first to the last.
+typedef struct {
+    uint64_t ripe_rows;   // with, or beside one with, cells from which the wave gets on where it is narrow
+    uint64_t fresh_below; // the new cells of the row before
+    uint64_t ripe[3];     // of the rows about one: up to three rows ask for each
+    int row[3];
+} sweep_t;
+
+static uint64_t ripe_in(sweep_t *const sweep, const argus_wave_t *const self, const int y) {
+    const int slot = (y + 3) % 3;
+    if (sweep->row[slot] != y) {
+        sweep->row[slot] = y;
+        sweep->ripe[slot] = ripe(self, y);
+    }
+    return sweep->ripe[slot];
+}
+
+// The cells of a row where it is narrow that the wave comes to, of those next to what it has reached.
+static uint64_t come_slowly(const argus_wave_t *const self, sweep_t *const sweep, const int y,
                             const uint64_t slow) {
     ARGUS_ASSERT(y >= 0 && y < CELLS);
     ARGUS_ASSERT((slow & (self->reached[y] | self->wide[y])) == 0);
-    const uint64_t others = (ripened(ripe, self, y - 1) & ~ripe->fresh_below) | ripened(ripe, self, y + 1);
-    return beside(ripened(ripe, self, y), others, self->step % 2 == 0) & slow;
+    const uint64_t others = ripe_in(sweep, self, y - 1) | ripe_in(sweep, self, y + 1);
+    return beside(ripe_in(sweep, self, y), others, self->step % 2 == 0) & slow;
 }
 
 static uint64_t alive(const argus_wave_t *const self) {
     uint64_t rows = 0;
-    for (int i = 0; i < ARGUS_WAVE_MEMORY; i++) {
+    for (int i = 0; i < MEMORY; i++) {
         rows |= self->moved[i];
     }
     return rows;
 }
 
-// The new cells of a row.
-static uint64_t come_beside(const argus_wave_t *const self, ripe_t *const ripe, const int y,
+// The new cells of a row. Of the row before counts what was there before this step.
+static uint64_t come_beside(const argus_wave_t *const self, sweep_t *const sweep, const int y,
                             int32_t *const work) {
     ARGUS_ASSERT(y >= 0 && y < CELLS);
     const uint64_t here = self->reached[y];
-    const uint64_t below = y > 0 ? self->reached[y - 1] & ~ripe->fresh_below : 0;
+    const uint64_t below = y > 0 ? self->reached[y - 1] & ~sweep->fresh_below : 0;
     const uint64_t others = below | (y + 1 < CELLS ? self->reached[y + 1] : 0);
     const uint64_t next = beside(here, others, self->step % 2 == 0) & ~here & self->narrow[y];
     const uint64_t slow = next & ~self->wide[y];
     *work += slow != 0 ? SLOW_WORK : ROW_WORK;
-    return (next & self->wide[y]) | (slow != 0 ? come_slowly(self, ripe, y, slow) : 0);
+    const bool gets_on = slow != 0 && (sweep->ripe_rows & 1u) != 0;
+    return (next & self->wide[y]) | (gets_on ? come_slowly(self, sweep, y, slow) : 0);
 }
 
 // A row gets new cells only where it, or one beside it, got some a few steps ago.
 static void advance(argus_wave_t *const self, int32_t *const work) {
     ARGUS_ASSERT(self->step >= 1);
-    ripe_t ripe = {.row = {-1, -1, -1}};
+    sweep_t sweep = {.ripe_rows = widened(moved(self, NARROW_STEPS) | moved(self, RIPE_STEPS), 1),
+                     .row = {NO_ROW, NO_ROW, NO_ROW}};
     int y = 0;
-    for (uint64_t rows = widened(alive(self), 1); rows != 0; rows >>= 1, y++) {
-        ripe.fresh_below = (rows & 1u) != 0 ? come_beside(self, &ripe, y, work) : 0;
-        if (ripe.fresh_below != 0) {
-            come_to(self, y, ripe.fresh_below);
+    for (uint64_t rows = widened(alive(self), 1); rows != 0; rows >>= 1, sweep.ripe_rows >>= 1, y++) {
+        sweep.fresh_below = (rows & 1u) != 0 ? come_beside(self, &sweep, y, work) : 0;
+        if (sweep.fresh_below != 0) {
+            come_to(self, y, sweep.fresh_below);
             *work += FRESH_WORK;
         }
     }
@@ -337,7 +348,7 @@ argus_wave_news_t argus_wave_spread(argus_wave_t *const self, int32_t *const wor
     if (argus_wave_label(self, self->to) != 0) {
         return ARGUS_WAVE_THERE;
     }
-    self->moved[self->step % ARGUS_WAVE_MEMORY] = 0;
+    self->moved[self->step % MEMORY] = 0;
     const bool more = !argus_wave_is_within(self->from) && come_in(self);
     if (self->step == STEPS_MAX || (!more && alive(self) == 0)) {
         return ARGUS_WAVE_DEAD;
