@@ -192,10 +192,11 @@ static bool leads_out(const argus_t *const self, const argus_guard_t *const guar
 static void turn_to_bearing(const argus_t *const self, const argus_guard_t *const guard,
                             argus_travel_t *const mine, argus_intent_t *const intent) {
     static const int16_t tries_cdeg[] = {2000, 1500, 1000, 500, 0, -500, -1000, -1500, -2000};
+    ARGUS_ASSERT(mine->jog_mm == 0); // an operator's step goes where the robot looks
     const int32_t to_cdeg = bearing(self, mine);
     const int32_t now_cdeg = self->knowledge.pose.heading_cdeg;
     const bool left = argus_angle_wrap(to_cdeg - now_cdeg) > 0;
-    const bool hemmed = argus_guard_swing_is_blocked(guard) && mine->jog_mm == 0 &&
+    const bool hemmed = argus_guard_swing_is_blocked(guard) &&
                         !argus_may_be_crosstalk(self, guard); // that is read again first
     for (int i = 0; i < (int)(sizeof tries_cdeg / sizeof tries_cdeg[0]) && hemmed; i++) {
         const int32_t by_cdeg = left ? tries_cdeg[i] : -tries_cdeg[i];

@@ -32,7 +32,7 @@ static void forget_sonars(argus_knowledge_t *const knowledge, argus_events_t *co
                           const argus_mask_t recorded) {
     ARGUS_ASSERT(knowledge->sonars <= ARGUS_SONARS);
     for (int i = 0; i < knowledge->sonars; i++) {
-        if ((recorded >> i & 1u) == 0 && argus_health_may(knowledge, i, ARGUS_CHANGE_FORGOTTEN)) {
+        if ((recorded >> i & 1u) == 0) { // none of a robot's sonars is absent, and any other may be forgotten
             argus_emit_change(events, knowledge, i, ARGUS_CHANGE_FORGOTTEN, ARGUS_KIND_NONE, 0);
         }
     }

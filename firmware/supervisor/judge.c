@@ -58,7 +58,8 @@ static void name(argus_t *const self, const int sonar, const argus_finding_t *co
     if (named) {
         argus_flag_suspects(self, &self->knowledge, &self->events, (argus_mask_t)(1u << sonar));
     }
-    if (named && s->health == ARGUS_SUSPECT && kind != s->kind) {
+    ARGUS_ASSERT(!named || s->health == ARGUS_SUSPECT);
+    if (named && kind != s->kind) {
         const bool named_before = s->named;
         argus_looks_rename(&self->looks, sonar, s->kind, kind);
         argus_emit_change(&self->events, &self->knowledge, sonar, ARGUS_CHANGE_NAMED, kind, (int32_t)kind);
@@ -172,9 +173,8 @@ static void judge_out(argus_t *const self, const int sonar, const argus_finding_
 // over.
 static bool is_passed_over(const argus_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
-    const argus_robot_t *const robot = self->knowledge.robot;
-    const bool late =
-        (argus_robot_polled(robot) >> sonar & 1u) != 0 && !argus_robot_faces_forward(robot, sonar);
+    ARGUS_ASSERT(!argus_robot_faces_forward(self->knowledge.robot, sonar));
+    const bool late = (argus_robot_polled(self->knowledge.robot) >> sonar & 1u) != 0;
     return late && self->firing.ordered &&
            self->now_ms - self->firing.ordered_ms <= (uint32_t)self->config.stale_ms;
 }

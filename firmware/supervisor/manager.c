@@ -229,7 +229,8 @@ static void take_lateness(argus_t *const self, const argus_lateness_t news) {
     if (news == ARGUS_LATE_AS_BEFORE) {
         return;
     }
-    self->checked = self->checked && news != ARGUS_LATE_STANDS;
+    ARGUS_ASSERT(news == ARGUS_LATE_STANDS || !self->checked); // no mode runs while it stands
+    self->checked = false;
     argus_stop_and_do(self, news == ARGUS_LATE_STANDS ? ARGUS_STOP_STOP : ARGUS_STOP_HALT,
                       may ? ARGUS_DO_CHECK : ARGUS_DO_NOTHING, true);
     if (news == ARGUS_LATE_GOES_ON) {
@@ -328,10 +329,11 @@ void argus_receive(argus_t *const self, const uint32_t now_ms, const uint8_t *co
             argus_session_receive(&self->session, &self->config, now_ms, bytes + done, count - done, &taken);
         handle(self, bits);
         done += taken;
-        if (bits == 0 && (done >= count || taken == 0)) {
+        if (bits == 0) {
             break;
         }
     }
+    ARGUS_ASSERT(done == count);
 }
 
 bool argus_observe(argus_t *const self, const uint32_t now_ms, const argus_observation_t *const observation) {

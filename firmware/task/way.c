@@ -105,7 +105,8 @@ static void begin_pull(argus_search_t *const self) {
 // to, best one on which the robot can turn. False: it is pulled.
 static bool pull_on(argus_search_t *const self) {
     argus_pull_t *const pull = &self->pull;
-    if ((!pull->straight && !pull->first) || !descend(&self->wave, pull)) {
+    ARGUS_ASSERT(pull->straight || !pull->first); // what is done at once ends in a cell beside the robot's
+    if (!pull->straight || !descend(&self->wave, pull)) {
         return false;
     }
     const argus_point_t centre = centre_of(&self->wave, pull->at);

@@ -736,3 +736,28 @@ void test_no_bytes_are_no_news(void) {
     TEST_ASSERT_EQUAL(0, argus_parser_push(&parser, 1, NULL, 0));
     TEST_ASSERT_EQUAL(0, parser.packets);
 }
+
+// While bytes of a packet that is in no doubt are owed, there is nothing to decide: asked all the same, it
+// changes nothing.
+void test_asked_before_a_packet_is_whole_it_waits(void) {
+    static const uint8_t data[] = {ARCOS_CMD_VEL, ARCOS_ARG_POSITIVE, 100, 0};
+    uint8_t frame[16];
+    argus_parser_t parser;
+    argus_packet_t out;
+    argus_parser_init(&parser);
+    const size_t count = argus_frame_encode(frame, sizeof frame, data, sizeof data);
+    size_t at = 0;
+    while (!argus_parser_waits(&parser, 0)) {
+        TEST_ASSERT_TRUE(at < count);
+        at += argus_parser_push(&parser, 0, frame + at, 1);
+        TEST_ASSERT_FALSE(argus_parser_next(&parser, 0, &out));
+    }
+    const argus_parser_t before = parser;
+    TEST_ASSERT_FALSE(argus_parser_decide(&parser, 0, &out));
+    TEST_ASSERT_EQUAL_MEMORY(&before, &parser, sizeof parser);
+    while (at < count) {
+        at += argus_parser_push(&parser, 0, frame + at, 1);
+    }
+    TEST_ASSERT_TRUE(argus_parser_next(&parser, 0, &out));
+    TEST_ASSERT_EQUAL_MEMORY(data, out.data, sizeof data);
+}

@@ -253,11 +253,13 @@ void test_what_was_heard_ahead_does_not_vanish(void) {
     static const struct {
         unsigned hear;
         int sips;
+        int first_mm;
         bool doubted;
-    } by[] = {{1u << 3 | 1u << 4, 12, true},
-              {1u << 4, 12, false},
-              {1u << 0 | 1u << 7, 12, false},
-              {1u << 3 | 1u << 4, 60, false}};
+    } by[] = {{1u << 3 | 1u << 4, 12, 1500, true},
+              {1u << 4, 12, 1500, false},
+              {1u << 0 | 1u << 7, 12, 1500, false},
+              {1u << 3 | 1u << 4, 60, 1500, false},
+              {1u << 3 | 1u << 4, 12, 4700, false}}; // echoes from so far come and go
     for (size_t i = 0; i < sizeof by / sizeof by[0]; i++) {
         setUp();
         darken(0xFFFFu & ~by[i].hear);
@@ -265,7 +267,7 @@ void test_what_was_heard_ahead_does_not_vanish(void) {
             range_mm[0] = range_mm[7] = (by[i].hear & 0x81u) != 0 ? 1300 : NONE;
             range_mm[3] = range_mm[4] = NONE;
             for (int s = 3; s <= 4; s++) {
-                range_mm[s] = (by[i].hear >> s & 1u) != 0 ? 1500 - 20 * k_sip : NONE;
+                range_mm[s] = (by[i].hear >> s & 1u) != 0 ? by[i].first_mm - 20 * k_sip : NONE;
             }
             drive(1, 200);
         }
@@ -290,6 +292,33 @@ void test_what_the_body_met_should_have_been_heard(void) {
     drive(1, 0);
     TEST_ASSERT_EQUAL_HEX(FRONT, doubted());
     TEST_ASSERT_EQUAL(0, convicted());
+}
+
+// ... nor is what was driven between two readings that lie too far apart: what stood between them nobody
+// knows.
+void test_what_is_passed_between_readings_too_far_apart_does_not_count(void) {
+    darken(FRONT);
+    drive(80, 1100); // 440 mm from one reading to the next
+    TEST_ASSERT_EQUAL(0, convicted());
+    setUp();
+    darken(FRONT);
+    drive(80, 900);
+    TEST_ASSERT_EQUAL_HEX(FRONT, convicted());
+}
+
+// One that is convicted already is no news when the doubt comes, too.
+void test_a_doubt_of_what_is_convicted_is_no_news(void) {
+    for (int proven = 0; proven < 2; proven++) {
+        setUp();
+        darken(FRONT);
+        drive(20, 0);
+        TEST_ASSERT_EQUAL(0, doubted());
+        c.of[0].proven = proven != 0;
+        argus_common_touched(&c, FRONT);
+        drive(1, 0);
+        TEST_ASSERT_EQUAL_HEX(FRONT, doubted());
+        TEST_ASSERT_EQUAL(proven != 0 ? 0 : 1, strikes);
+    }
 }
 
 void test_standing_beside_a_wall_is_no_way_along_it(void) {

@@ -462,3 +462,18 @@ void test_silence_together_brings_back_who_made_echoes_up(void) {
         TEST_ASSERT_EQUAL(made_up, e.of[ME].agreed);
     }
 }
+
+// ---- a silence of a whole array
+
+// What it heard nothing of before it went dark says nothing of the array.
+void test_only_what_an_array_misses_while_it_is_dark_is_held_against_it(void) {
+    for (int before = 0; before < 2; before++) {
+        setUp();
+        e.dark = 1u << ME;
+        e.dispute[0].since_ms = k.sip_ms - (before != 0 ? 0u : 500u);
+        heard(WITNESS, 1500);
+        reads(NONE_MM);
+        TEST_ASSERT_EQUAL(before == 0, e.dispute[0].nats > 0);
+        TEST_ASSERT_EQUAL_HEX(before == 0 ? 1u << WITNESS : 0u, e.dispute[0].by);
+    }
+}

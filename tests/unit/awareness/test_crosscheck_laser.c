@@ -165,3 +165,33 @@ void test_a_sector_is_not_judged_by_sectors(void) {
     argus_crosscheck_take(&e, &k, MIDDLE);
     TEST_ASSERT_EQUAL(0, e.of[MIDDLE].score[ARGUS_TEST_PEERS]);
 }
+
+// A transducer that sits far behind the laser hears nothing for sure of what is near to that.
+void test_what_is_too_far_from_the_transducer_alone_says_nothing(void) {
+    begin(ARGUS_SURE_MM - 200);
+    own.poses[ME].x_mm = 0;
+    TEST_ASSERT_EQUAL(AGAINST, verdict(NONE_MM));
+    begin(ARGUS_SURE_MM - 200);
+    own.poses[ME].x_mm = -400;
+    TEST_ASSERT_EQUAL(NOTHING, verdict(NONE_MM));
+}
+
+// Two sectors that look the same way may have two things as their nearest; but where one returns nothing
+// there is nothing.
+void test_a_sector_is_contradicted_in_its_silence_alone(void) {
+    static const int reads_mm[] = {NONE_MM, 2500};
+    for (int i = 0; i < 2; i++) {
+        begin(1500);
+        own.poses[FIRST + 1] = own.poses[FIRST];
+        argus_ping_t at = argus_ping_from(k.robot, FIRST, &k.pose);
+        at.t_ms = (uint16_t)(k.sip_ms & 0xFFFFu);
+        at.steady = at.weighed = 1;
+        at.reading_mm = 1500;
+        argus_pings_note(&e.pings[FIRST + 1], at);
+        at.weighed = 0;
+        at.reading_mm = (uint16_t)reads_mm[i];
+        argus_pings_note(&e.pings[FIRST], at);
+        argus_crosscheck_take(&e, &k, FIRST);
+        TEST_ASSERT_EQUAL(i == 0, e.of[FIRST].score[ARGUS_TEST_PEERS] > 0);
+    }
+}

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rule under attack (profile argus): a fault is convicted by the test made for it and by nothing else; what
 // is healthy is never convicted, whatever moves, is far, is smooth or echoes across.
+#include "awareness/clutter.h"
 #include "awareness/evidence.h"
 #include "knowledge/angle.h"
 
@@ -386,6 +387,22 @@ void test_a_look_aside_that_hears_nothing_is_no_gap(void) {
             scene_say(&s, 1u << 3, reading);
         }
         TEST_ASSERT_EQUAL(aside == 0, s.e.of[3].score[ARGUS_TEST_DROPOUT] > 0);
+    }
+}
+
+// While something moves about the robot it may have stood in between.
+void test_a_gap_in_unrest_counts_for_nothing(void) {
+    for (int unrest = 0; unrest < 2; unrest++) {
+        scene_init(&s, 1, START_MS);
+        for (int n = 0; n < 24; n++) {
+            reading[3] = n > 7 && n % 8 < 3 ? 5000 : 1500;
+            if (unrest != 0) {
+                argus_clutter_note(&s.e, &s.k, 12);
+            }
+            scene_say(&s, 1u << 3, reading);
+        }
+        TEST_ASSERT_EQUAL(unrest == 0, s.e.of[3].score[ARGUS_TEST_DROPOUT] > 0);
+        TEST_ASSERT_EQUAL(unrest == 0, s.e.of[3].gaps > 0);
     }
 }
 

@@ -5,6 +5,7 @@
 
 #include <string.h>
 
+#include "awareness/numbers.h"
 #include "knowledge/body.h"
 #include "unity.h"
 
@@ -69,6 +70,23 @@ void test_a_turn_begins_it_anew(void) {
     TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, argus_extremes_convicts(&extremes, 3));
 }
 
+// Abeam it takes a greater turn: so near, another on that side would still hear what is there.
+void test_how_far_a_turn_may_go_depends_on_where_it_looks(void) {
+    for (int sonar = 0; sonar < 16; sonar++) {
+        const unsigned abeam =
+            argus_robot_flank(argus_robot_default()) | argus_robot_rear_flank(argus_robot_default());
+        const int most_cdeg =
+            (abeam >> sonar & 1u) != 0 ? ARGUS_SHORTEST_TURNED_ABEAM_CDEG : ARGUS_SHORTEST_TURNED_CDEG;
+        for (int beyond = 0; beyond < 2; beyond++) {
+            setUp();
+            read_at(sonar, 0, 100);
+            k.pose.heading_cdeg = most_cdeg + beyond;
+            read_at(sonar, 0, 100);
+            TEST_ASSERT_EQUAL(beyond != 0 ? most_cdeg + 1 : 0, extremes.of[sonar].from_cdeg);
+        }
+    }
+}
+
 static void pass_by(int way_mm, int mate_mm) {
     for (int x = 0; x <= way_mm; x += 20) {
         k.sonar[15].reported = mate_mm > 0;
@@ -88,6 +106,23 @@ void test_abeam_the_mate_on_the_same_side_tells(void) {
     TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, argus_extremes_convicts(&extremes, 0));
     pass_by(2100, 0);
     TEST_ASSERT_EQUAL(ARGUS_KIND_STUCK, argus_extremes_convicts(&extremes, 0));
+}
+
+// A mate that reads its shortest, too, hears the wall for all that is known.
+void test_two_that_read_their_shortest_prove_nothing_by_a_way_along(void) {
+    pass_by(6000, 100);
+    TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, argus_extremes_convicts(&extremes, 0));
+}
+
+// What was proved ends with the first reading that is another one, be it as near.
+void test_a_reading_that_changes_takes_the_proof_back(void) {
+    for (int x = 0; x >= -450; x -= 20) {
+        read_at(3, x, 100);
+    }
+    TEST_ASSERT_TRUE(argus_extremes_keeps_out(&extremes, 3));
+    read_at(3, -470, 160);
+    TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, argus_extremes_convicts(&extremes, 3));
+    TEST_ASSERT_FALSE(argus_extremes_keeps_out(&extremes, 3));
 }
 
 void test_below_the_least_needs_no_way(void) {

@@ -189,6 +189,18 @@ void test_what_is_late_does_not_look_offset(void) {
     TEST_ASSERT_EQUAL(ARGUS_KIND_SLOW, named());
 }
 
+// ... and so is one that is late by what others heard, whatever its score among them.
+void test_a_suspicion_of_lateness_is_held_until_little_is_left(void) {
+    for (int lag = 0; lag < ARGUS_LAGS; lag++) {
+        setUp();
+        const int32_t border = ARGUS_LATE_NAMING * ARGUS_HELD_PERCENT / 100;
+        c->hypothesis[lag].over_healthy = (int16_t)border;
+        TEST_ASSERT_FALSE(argus_evidence_holds(&e, SONAR));
+        c->hypothesis[lag].over_healthy = (int16_t)(border + (ARGUS_LATE_NAMING + 99) / 100);
+        TEST_ASSERT_TRUE(argus_evidence_holds(&e, SONAR));
+    }
+}
+
 // A suspect is held until little is left of it.
 void test_a_suspicion_is_held_until_little_is_left(void) {
     for (int score = ARGUS_CEILING; score >= 0; score -= 10) {

@@ -251,3 +251,30 @@ void test_s2_beside_the_way_counts_on_a_way_ahead_only(void) {
     core->motion.kind = ARGUS_MOTION_MOVE;
     TEST_ASSERT_EQUAL(ARGUS_DO_CHECK, flank_acts());
 }
+
+// ---- those that do not face forward, by the rules of the paper
+
+// News is a healthy one that yields nothing any more, or one that did not and does again; nothing else is.
+void test_the_others_are_watched_where_their_silence_changes(void) {
+    static const argus_health_t healths[] = {ARGUS_UNKNOWN, ARGUS_HEALTHY, ARGUS_SUSPECT, ARGUS_DISABLED,
+                                             ARGUS_STALE};
+    const argus_config_t paper = robot_config_of(ARGUS_PROFILE_PAPER);
+    core->rules = argus_profile(&paper);
+    for (size_t i = 0; i < sizeof healths / sizeof healths[0]; i++) {
+        for (int silent = 0; silent < 2; silent++) {
+            for (int ahead = 0; ahead < 2; ahead++) {
+                const int sonar = ahead != 0 ? 3 : 7;
+                robot_in_box(&robot, ARGUS_PROFILE_PAPER, -3000, -3000, 3000, 3000);
+                robot_run(&robot, 5000);
+                argus_sonar_t *const s = &core->knowledge.sonar[sonar];
+                s->health = healths[i];
+                s->heard_ms =
+                    core->knowledge.sip_ms - (silent != 0 ? (uint32_t)core->config.stale_ms + 1 : 0);
+                ask(ARGUS_REFLEX_others);
+                const bool news = healths[i] == (silent != 0 ? ARGUS_HEALTHY : ARGUS_STALE);
+                TEST_ASSERT_EQUAL_HEX32(news && ahead == 0 ? 1u << sonar : 0u, intent.sonars);
+                TEST_ASSERT_EQUAL(news && ahead == 0 ? ARGUS_DO_WATCH : ARGUS_DO_NOTHING, intent.act);
+            }
+        }
+    }
+}

@@ -4,6 +4,7 @@
 // operator's step is one MOVE.
 #include "behaviour/travel.h"
 
+#include "behaviour/reverse.h"
 #include "behaviour/state.h"
 #include "echo.h"
 #include "health.h"
@@ -140,7 +141,153 @@ void test_s7_a_short_wheel_is_not_countered_where_the_body_would_meet_something(
     TEST_ASSERT_FALSE(intent.steers);
 }
 
+// ... but where the circle is not free and the little that it takes is, it is.
+void test_s7_a_short_wheel_is_countered_by_a_nudge(void) {
+    shorten(50);
+    argus_guard_t guard = argus_guard(core);
+    bool found = false;
+    for (int x = 0; x <= 300 && !found; x += 10) {
+        for (int y = 200; y <= 400 && !found; y += 10) {
+            const argus_point_t at = argus_to_course(&core->knowledge.pose, (argus_point_t){x, y});
+            core->echoes.count = 0;
+            place_echo(&core->echoes, &core->knowledge, at.x_mm, at.y_mm);
+            core->echoes.at[0].again = true;
+            guard = argus_guard(core);
+            found = !argus_guard_may_turn(&guard) && argus_guard_may_nudge(&guard, -500);
+        }
+    }
+    TEST_ASSERT_TRUE(found);
+    run(argus_run_driving);
+    TEST_ASSERT_EQUAL(ARGUS_DO_DRIVE, intent.act);
+    TEST_ASSERT_TRUE(intent.steers);
+    TEST_ASSERT_NOT_EQUAL_INT32(core->knowledge.pose.heading_cdeg, intent.cdeg);
+}
+
+// ---- a turn at rest
+
+static void rest_off_its_bearing(int32_t cdeg) {
+    core->motion.settled = true;
+    core->motion.failed = false;
+    core->knowledge.still_sips = 10;
+    core->travel.aimed = false;
+    core->knowledge.pose.heading_cdeg = argus_angle_wrap(core->knowledge.pose.heading_cdeg + cdeg);
+}
+
+static void put_beside(int x_mm, int beside_mm) {
+    for (int side = -1; side <= 1; side += 2) {
+        const argus_point_t at = argus_to_course(
+            &core->knowledge.pose,
+            (argus_point_t){x_mm, side * (argus_robot_half_width_mm(core->knowledge.robot) + beside_mm)});
+        place_echo(&core->echoes, &core->knowledge, at.x_mm, at.y_mm);
+        core->echoes.at[core->echoes.count - 1].again = true;
+    }
+}
+
+// Hemmed in on both sides it may not even nudge: straight ahead leads out, and no turn is asked for.
+void test_out_of_a_place_too_narrow_for_a_nudge_it_goes_straight_ahead(void) {
+    rest_off_its_bearing(3000);
+    core->echoes.count = 0;
+    for (int x = -200; x < 0; x += 40) {
+        put_beside(x, 5);
+    }
+    const argus_guard_t guard = argus_guard(core);
+    TEST_ASSERT_TRUE(argus_guard_swing_is_blocked(&guard));
+    TEST_ASSERT_FALSE(argus_guard_may_nudge(&guard, 500) || argus_guard_may_nudge(&guard, -500));
+    const int32_t heading_cdeg = core->knowledge.pose.heading_cdeg;
+    run(argus_run_driving);
+    TEST_ASSERT_EQUAL(ARGUS_DO_NOTHING, intent.act);
+    TEST_ASSERT_TRUE(core->travel.task.avoiding && core->travel.task.has_leg);
+    TEST_ASSERT_INT32_WITHIN(20, heading_cdeg, argus_task_bearing_cdeg(&core->travel.task, &core->knowledge));
+}
+
+// Pushed while its MOVE is over, it is not at rest, and there is nothing to brake.
+void test_a_robot_that_is_pushed_is_waited_for(void) {
+    for (int over = 0; over < 2; over++) {
+        setUp();
+        rest_off_its_bearing(6000);
+        core->motion.kind = ARGUS_MOTION_MOVE;
+        core->motion.settled = over != 0;
+        core->knowledge.still_sips = 0;
+        run(argus_run_driving);
+        TEST_ASSERT_EQUAL(over != 0 ? ARGUS_DO_NOTHING : ARGUS_DO_BRAKE, intent.act);
+    }
+}
+
+// An operator's step begins at rest: what is under way ends first.
+void test_an_operators_step_ends_the_motion_under_way(void) {
+    core->travel.jog_mm = 120;
+    core->travel.aimed = false;
+    TEST_ASSERT_EQUAL(ARGUS_MOTION_MOVE, core->motion.kind);
+    TEST_ASSERT_FALSE(core->motion.settled);
+    run(argus_run_driving);
+    TEST_ASSERT_EQUAL(ARGUS_DO_BRAKE, intent.act);
+}
+
+// ---- which end leads
+
+static void hear_nothing_for(uint32_t way_mm) {
+    core->reverse.odometer_mm = core->knowledge.odometer_mm - way_mm;
+    for (int i = 0; i < core->knowledge.sonars; i++) {
+        core->knowledge.sonar[i].echo_mm = core->knowledge.odometer_mm - way_mm;
+        core->knowledge.sonar[i].reading_mm = 5000;
+    }
+}
+
+// An end that has led for long without an echo is looked at by the other one, where the rules let that lead.
+void test_an_end_that_heard_nothing_goes_on_where_no_other_may_lead(void) {
+    for (int may = 0; may < 2; may++) {
+        setUp();
+        argus_profile_t rules = *argus_rules(core);
+        rules.may_reverse = may != 0;
+        core->rules = &rules;
+        hear_nothing_for(5000);
+        const argus_guard_t guard = argus_guard(core);
+        TEST_ASSERT_TRUE(argus_guard_has_led(&guard));
+        run(argus_run_driving);
+        TEST_ASSERT_EQUAL(may != 0 && argus_robot_other_end(core->knowledge.robot) != NULL,
+                          intent.act == ARGUS_DO_CHECK);
+    }
+}
+
+// The ends change at rest alone.
+void test_the_front_leads_on_once_the_robot_rests(void) {
+    const argus_robot_t *const other = argus_robot_other_end(core->knowledge.robot);
+    if (other == NULL) {
+        TEST_IGNORE_MESSAGE("a small build manages one end");
+    }
+    argus_knowledge_turn_about(&core->knowledge, other);
+    core->reverse = (argus_reverse_t){.odometer_mm = core->knowledge.odometer_mm, .done = true};
+    hear_nothing_for(0);
+    core->travel.aimed = true;
+    core->knowledge.pose.heading_cdeg = argus_angle_wrap(core->knowledge.pose.heading_cdeg - 18000);
+    TEST_ASSERT_TRUE(argus_should_hand_back(core));
+    for (int rests = 0; rests < 2; rests++) {
+        core->knowledge.still_sips = (uint16_t)(rests * 10);
+        run(argus_run_driving);
+        TEST_ASSERT_EQUAL(rests != 0, intent.act == ARGUS_DO_TURN_ABOUT);
+    }
+}
+
 // ---- what is not seen
+
+// Where no sonar ahead is left, there is none for which the heading would be swung.
+void test_without_a_sonar_ahead_it_does_not_weave(void) {
+    for (int left = 0; left < 2; left++) {
+        setUp();
+        const argus_mask_t ahead = argus_robot_forward(core->knowledge.robot);
+        for (int i = 0; i < core->knowledge.sonars; i++) {
+            if ((ahead >> i & 1u) != 0 && (left == 0 || i == 3)) {
+                put_health(&core->knowledge.sonar[i], ARGUS_DISABLED, ARGUS_KIND_OFF, core->now_ms);
+            }
+        }
+        const argus_guard_t guard = argus_guard(core);
+        TEST_ASSERT_TRUE(argus_guard_is_blind(&guard));
+        const int16_t side = core->travel.weave.side;
+        run(argus_run_driving);
+        TEST_ASSERT_EQUAL(ARGUS_DO_DRIVE, intent.act);
+        TEST_ASSERT_EQUAL(left != 0, core->travel.weave.side != side);
+    }
+}
 
 static void see_nothing_of_the_way(void) {
     put_health(&core->knowledge.sonar[3], ARGUS_DISABLED, ARGUS_KIND_OFF, core->now_ms);
@@ -236,6 +383,10 @@ void test_it_steers_while_it_creeps_only_off_its_bearing_and_where_it_may_turn(v
     TEST_ASSERT_EQUAL(ARGUS_DO_CREEP, intent.act);
     TEST_ASSERT_TRUE(intent.steers);
     TEST_ASSERT_TRUE(argus_abs(intent.cdeg) < 200);
+    put_beside(-100, 20);
+    run(argus_run_creeping);
+    TEST_ASSERT_EQUAL(ARGUS_DO_CREEP, intent.act);
+    TEST_ASSERT_FALSE(intent.steers);
 }
 
 // ---- an operator's step

@@ -195,6 +195,17 @@ void test_a_tight_curve_is_slow_where_there_is_no_room(void) {
     }
 }
 
+// ... where a step is slow; one that is fast enough to leave the curve far bounds it by itself.
+void test_a_tight_curve_is_no_slower_than_a_step(void) {
+    core->config.step_speed_mm_s = 700;
+    core->knowledge.vel_left_mm_s = 0;
+    core->knowledge.vel_right_mm_s = 1500;
+    read_all(0xFFFF, 1900);
+    read_all(1u << 7, 600); // abeam
+    const argus_bound_t bound = argus_bound_way(core, true);
+    TEST_ASSERT_EQUAL_INT32(700, bound.speed_mm_s);
+}
+
 // The rules of the paper ask for no echo: behind, as fast as the manager drives.
 void test_back_by_the_rules_of_the_paper_no_echo_is_asked_for(void) {
     for (int paper = 0; paper < 2; paper++) {
@@ -207,4 +218,25 @@ void test_back_by_the_rules_of_the_paper_no_echo_is_asked_for(void) {
         TEST_ASSERT_EQUAL(paper != 0, mm_s == core->config.speed_mm_s);
         TEST_ASSERT_EQUAL(paper == 0, mm_s < core->config.speed_mm_s);
     }
+}
+
+// Where a bearing is blind, what has been seen of the way bounds it as what is heard does: where that is so
+// little that it could only crawl, it stands.
+void test_s5_a_way_of_which_too_little_is_seen_is_closed(void) {
+    bool open = false, crawls = false;
+    for (int free_mm = 0; free_mm <= 1500; free_mm += 25) {
+        setUp();
+        put_health(&core->knowledge.sonar[3], ARGUS_DISABLED, ARGUS_KIND_OFF, core->now_ms);
+        core->latency.late_ms = 4000;
+        for (int i = 0; i < ARGUS_RAYS_MAX; i++) {
+            core->rays.at[i].free_mm = (uint16_t)argus_min(core->rays.at[i].free_mm, free_mm);
+        }
+        const argus_guard_t guard = argus_guard(core);
+        const argus_bound_t bound = argus_bound_way(core, true);
+        open = open || bound.speed_mm_s > 0;
+        crawls = crawls || (bound.why == ARGUS_BOUND_UNSEEN && argus_guard_seen_mm(&guard) > 0);
+        TEST_ASSERT_TRUE(bound.speed_mm_s == 0 || bound.speed_mm_s >= 30);
+    }
+    TEST_ASSERT_TRUE(open);
+    TEST_ASSERT_TRUE(crawls);
 }

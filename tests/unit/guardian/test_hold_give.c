@@ -200,3 +200,125 @@ void test_a_pair_or_a_turn_ends_the_looks_without_another_order(void) {
         }
     }
 }
+
+// ---- what is given stays while it may
+
+static int32_t bound_with_ahead_mm(int32_t mm) {
+    for (int i = 0; i < core->knowledge.sonars; i++) {
+        if (argus_robot_looks_ahead(core->knowledge.robot, i)) {
+            core->knowledge.sonar[i].reading_mm = (uint16_t)mm;
+            core->knowledge.sonar[i].odometer_mm = core->knowledge.odometer_mm;
+        }
+    }
+    return argus_bound_way(core, true).speed_mm_s;
+}
+
+// Raised in steps only, and lowered only where it must be.
+void test_a_speed_between_two_steps_is_kept_where_it_is_within_the_bound(void) {
+    int32_t most_mm_s = 0;
+    for (int32_t mm = 900; most_mm_s % 25 < 2; mm += 10) {
+        most_mm_s = bound_with_ahead_mm(mm);
+        TEST_ASSERT_GREATER_THAN_INT32(25, most_mm_s);
+    }
+    for (int32_t has_mm_s = most_mm_s - 1; has_mm_s <= most_mm_s + 1; has_mm_s++) {
+        hold.setv_mm_s = 1000;
+        want(ARGUS_WISH_VEL, most_mm_s + 50);
+        hold.given.mm_s = has_mm_s;
+        argus_hold_way(&grant, &hold);
+        TEST_ASSERT_EQUAL_INT32(has_mm_s <= most_mm_s ? has_mm_s : most_mm_s / 25 * 25, hold.given.mm_s);
+    }
+}
+
+void test_a_pair_goes_out_again_where_one_wheel_alone_is_another(void) {
+    hold.wish.paired = true;
+    want(ARGUS_WISH_VEL, 200);
+    argus_hold_way(&grant, &hold);
+    TEST_ASSERT_EQUAL(10, hold.given.left);
+    argus_outbox_clear(&out);
+    argus_hold_watch(&grant, &hold);
+    TEST_ASSERT_EQUAL(0, out.length);
+    hold.wish.mm_s = 190;
+    hold.wish.half_mm_s = 10;
+    argus_hold_watch(&grant, &hold);
+    TEST_ASSERT_EQUAL(ARCOS_CMD_VEL2, out.bytes[3]);
+    TEST_ASSERT_EQUAL(10, hold.given.right);
+    TEST_ASSERT_EQUAL(9, hold.given.left);
+}
+
+// A robot that turns about one wheel does something; one that stands for long has lost its order.
+void test_an_order_is_lost_where_both_wheels_rest(void) {
+    static const int wheels_mm_s[][2] = {{0, 0}, {0, 60}, {60, 0}};
+    for (int i = 0; i < 3; i++) {
+        setUp();
+        want(ARGUS_WISH_VEL, 250);
+        argus_hold_way(&grant, &hold);
+        argus_outbox_clear(&out);
+        core->knowledge.vel_left_mm_s = (int16_t)wheels_mm_s[i][0];
+        core->knowledge.vel_right_mm_s = (int16_t)wheels_mm_s[i][1];
+        hold.given.move_ms = core->now_ms - 5000;
+        argus_hold_watch(&grant, &hold);
+        TEST_ASSERT_EQUAL(i == 0, out.length > 0);
+    }
+}
+
+static void want_move(int32_t mm) {
+    hold.wish.way = ARGUS_WISH_MOVE;
+    hold.wish.left_mm = mm;
+    hold.wish.odometer_mm = core->knowledge.odometer_mm;
+}
+
+void test_a_move_of_nothing_stands(void) {
+    want_move(0);
+    argus_hold_way(&grant, &hold);
+    expect(ARCOS_CMD_VEL, 0);
+    expect_nothing();
+}
+
+// What of a MOVE is left when its way was closed is given when that is open again.
+void test_a_move_goes_on_where_the_way_opens_again(void) {
+    want_move(1000);
+    argus_hold_way(&grant, &hold);
+    TEST_ASSERT_TRUE(hold.given.moves);
+    bound_with_ahead_mm(core->config.object_range_mm);
+    argus_hold_watch(&grant, &hold);
+    TEST_ASSERT_FALSE(hold.given.rolls || hold.given.moves);
+    argus_outbox_clear(&out);
+    bound_with_ahead_mm(3000);
+    argus_hold_watch(&grant, &hold);
+    TEST_ASSERT_TRUE(hold.given.rolls && hold.given.moves);
+    int32_t mm = 0;
+    TEST_ASSERT_EQUAL(ARCOS_CMD_MOVE, fetch(&mm));
+    TEST_ASSERT_EQUAL_INT32(1000, mm);
+}
+
+// A way that slanted into a wall is closed as long as the robot has neither gone from there nor turned away.
+void test_another_heading_is_another_way_than_the_one_that_slanted(void) {
+    for (int32_t turned_cdeg = -400; turned_cdeg <= 400; turned_cdeg += 100) {
+        setUp();
+        hold.given.slanted = true;
+        hold.given.slant_mm = core->knowledge.odometer_mm;
+        hold.given.slant_cdeg = core->knowledge.pose.heading_cdeg - turned_cdeg;
+        want(ARGUS_WISH_VEL, 200);
+        argus_hold_way(&grant, &hold);
+        TEST_ASSERT_EQUAL(turned_cdeg < -300 || turned_cdeg > 300, hold.given.rolls);
+    }
+}
+
+// A turn that was ended is not ended with each SIP again.
+void test_a_look_that_stays_held_is_ended_once(void) {
+    put_health(&core->knowledge.sonar[3], ARGUS_DISABLED, ARGUS_KIND_OFF, core->now_ms);
+    want(ARGUS_WISH_VEL, 200);
+    core->knowledge.bumpers_rear = 4; // no turn, and the way ahead is open
+    hold.given.bumpers = 0xFFFF;
+    int ends = 0;
+    for (int i = 0; i < 5; i++) {
+        argus_hold_watch(&grant, &hold);
+        int32_t deg_s = 0;
+        for (int command = fetch(&deg_s); command >= 0; command = fetch(&deg_s)) {
+            ends += command == ARCOS_CMD_RVEL && deg_s == 0;
+            TEST_ASSERT_NOT_EQUAL(ARCOS_CMD_HEAD, command);
+        }
+    }
+    TEST_ASSERT_EQUAL(1, ends);
+    TEST_ASSERT_NOT_EQUAL(0, hold.given.weave.side);
+}

@@ -46,15 +46,16 @@ static void drive(void) {
 }
 
 // Nothing goes out to the robot any more, as where its line is slow.
-static void fill_outbox(void) {
-    robot.argus.session.outbox.length = ARGUS_OUTBOX_BYTES;
+static void fill_outbox(size_t room) {
+    robot.argus.session.outbox.length = (uint16_t)(ARGUS_OUTBOX_BYTES - room);
 }
 
 static void empty_outbox(void) {
     robot.argus.session.outbox.length = 0;
 }
 
-static void pass_full(uint8_t command, int32_t argument) {
+// With so much room left in the outbox.
+static void pass_with(size_t room, uint8_t command, int32_t argument) {
     uint8_t packet[16];
     uint8_t out[256];
     const argus_port_io_t io = {.there = true,
@@ -62,10 +63,13 @@ static void pass_full(uint8_t command, int32_t argument) {
                                 .client_count = argus_command_int(packet, sizeof packet, command, argument),
                                 .out = out,
                                 .capacity = sizeof out};
-    fill_outbox();
+    fill_outbox(room);
     argus_guard_port(&robot.argus, &client.storage, now_ms(), &io);
-    TEST_ASSERT_EQUAL_size_t(ARGUS_OUTBOX_BYTES, robot.argus.session.outbox.length);
     empty_outbox();
+}
+
+static void pass_full(uint8_t command, int32_t argument) {
+    pass_with(0, command, argument);
 }
 
 void test_who_only_listened_leaves_nothing_behind(void) {
@@ -184,6 +188,39 @@ void test_both_wheels_may_be_the_first_motion(void) {
     TEST_ASSERT_TRUE(robot.v > 150);
 }
 
+void test_a_turn_may_be_the_first_motion(void) {
+    listen();
+    client_say(&client, ARCOS_CMD_RVEL, 0); // it stands as it is
+    TEST_ASSERT_FALSE(robot.argus.orders.passive);
+    client_say(&client, ARCOS_CMD_HEAD, 40);
+    TEST_ASSERT_TRUE(robot.argus.orders.passive);
+    TEST_ASSERT_EQUAL_INT(1, count(ARGUS_EV_GUARD_DRIVES));
+}
+
+// Whoever only listens may stop the robot, too: once, and the same again is no other stop.
+void test_a_listeners_stop_again_is_the_same_stop(void) {
+    listen();
+    const int stops = sent(ARCOS_CMD_STOP);
+    uint8_t packets[32];
+    size_t length = 0;
+    for (int i = 0; i < 2; i++) {
+        length += argus_command_plain(packets + length, sizeof packets - length, ARCOS_CMD_STOP);
+    }
+    client_bytes(&client, packets, length);
+    TEST_ASSERT_EQUAL_INT(stops + 1, sent(ARCOS_CMD_STOP));
+}
+
+// An operator has taken the robot back, and what its client says in the same pass comes too late.
+void test_what_a_client_says_while_it_is_taken_back_moves_nothing(void) {
+    drive();
+    TEST_ASSERT_TRUE(argus_operator(&robot.argus, now_ms(), ARGUS_OP_ACTIVE, 0));
+    client_say(&client, ARCOS_CMD_VEL, 300);
+    TEST_ASSERT_FALSE(robot.argus.orders.passive);
+    TEST_ASSERT_FALSE(client_port(&client)->drives);
+    client_run(&client, 2000, true);
+    TEST_ASSERT_TRUE(robot.v < 1);
+}
+
 void test_other_settings_leave_the_speed(void) {
     drive();
     client_say(&client, ARCOS_CMD_SETV, 250);
@@ -203,13 +240,16 @@ void test_an_origin_takes_its_heading_back(void) {
 }
 
 void test_motors_for_which_there_is_no_room_are_given_with_the_next_sip(void) {
-    client_open(&client);
-    client_run(&client, 500, true);
-    pass_full(ARCOS_CMD_ENABLE, 0);
-    TEST_ASSERT_EQUAL_UINT8(ARGUS_PORT_MOTORS_OFF, client_port(&client)->motors);
-    client_run(&client, 300, true);
-    TEST_ASSERT_FALSE(robot.motors);
-    TEST_ASSERT_EQUAL_UINT8(ARGUS_PORT_MOTORS_AS_THEY_ARE, client_port(&client)->motors);
+    for (size_t room = 0; room <= ARGUS_OUTBOX_RESERVE + 14; room++) { // at the end for ENABLE, but no STOP
+        setUp();
+        client_open(&client);
+        client_run(&client, 500, true);
+        pass_with(room, ARCOS_CMD_ENABLE, 0);
+        TEST_ASSERT_EQUAL_UINT8(ARGUS_PORT_MOTORS_OFF, client_port(&client)->motors);
+        client_run(&client, 300, true);
+        TEST_ASSERT_FALSE(robot.motors);
+        TEST_ASSERT_EQUAL_UINT8(ARGUS_PORT_MOTORS_AS_THEY_ARE, client_port(&client)->motors);
+    }
 }
 
 void test_what_there_is_no_room_for_is_counted_and_has_no_effect(void) {

@@ -131,6 +131,17 @@ void test_what_was_heard_by_one_that_is_out_too_covers_nothing(void) {
     TEST_ASSERT_EQUAL_INT32(0, argus_rewrite_cover_mm(&robot.argus, 3));
 }
 
+// ... though what it heard before it went out is kept for other questions.
+void test_only_who_is_relied_on_covers(void) {
+    take_out(3);
+    turn_away_and_back();
+    TEST_ASSERT_TRUE(argus_rewrite_cover_mm(&robot.argus, 3) > 0);
+    for (int i = 0; i < robot.argus.knowledge.sonars; i++) {
+        robot.argus.knowledge.sonar[i].health = ARGUS_DISABLED;
+    }
+    TEST_ASSERT_EQUAL_INT32(0, argus_rewrite_cover_mm(&robot.argus, 3));
+}
+
 // ---- analog ports: a client sees the one that it has chosen
 
 static argus_analog_t analog;

@@ -7,6 +7,7 @@
 
 #include "health.h"
 #include "knowledge/angle.h"
+#include "robot/table.h"
 #include "unity.h"
 
 static argus_grid_t g;
@@ -214,6 +215,30 @@ void test_the_window_goes_with_the_robot(void) {
         reads(-1, 0);
         TEST_ASSERT_EQUAL_MESSAGE(0, occupied(), text);
     }
+}
+
+// A long robot's sonar sees beyond the window: what lies on its other side stays as it is.
+void test_a_beam_that_leaves_the_window_takes_nothing_back(void) {
+    static argus_own_robot_t own;
+    argus_robot_t *const row = &own.rows[0];
+    *row = *k.robot;
+    row->poses = (int16_t)((const char *)own.poses - (const char *)row);
+    own.poses[3] = (argus_sonar_pose_t){2900, 0, 0};
+    k.robot = row;
+    reads(-1, 0);
+    for (; k.pose.x_mm < 5000; k.pose.x_mm += 100) { // the window follows late
+        reads(-1, 0);
+    }
+    const argus_cell_t robot = argus_grid_cell((argus_point_t){k.pose.x_mm, 0});
+    const int high = g.low.x + ARGUS_GRID_CELLS; // the first cell beyond
+    TEST_ASSERT_TRUE((high - robot.x) * ARGUS_GRID_CELL_MM < 2900 + 1000);
+    const argus_cell_t wrapped = {high + 1 - ARGUS_GRID_CELLS, robot.y};
+    argus_grid_mark(&g, argus_grid_centre(wrapped), false);
+    TEST_ASSERT_TRUE(argus_grid_is_occupied(&g, wrapped));
+    for (int i = 0; i < 20; i++) {
+        reads(3, 3000);
+    }
+    TEST_ASSERT_TRUE(argus_grid_is_occupied(&g, wrapped));
 }
 
 void test_cells_are_rounded_down(void) {

@@ -386,3 +386,36 @@ void test_who_is_living(void) {
     }
     TEST_ASSERT_EQUAL_HEX32(1u << 5, argus_living(&k, 2000, now_ms));
 }
+
+// Each of the three by itself: a heading beyond a turn, and either wheel.
+void test_what_no_robot_states_is_no_motion(void) {
+    static const int16_t stated[][3] = {
+        {4097, 0, 0}, {-4097, 0, 0}, {0, 2001, 0}, {0, 0, 2001}, {0, 0, -2001}};
+    for (size_t i = 0; i < sizeof stated / sizeof stated[0]; i++) {
+        setUp();
+        take(1000);
+        take(1000);
+        TEST_ASSERT_FALSE(k.leapt);
+        sip.heading_raw = stated[i][0];
+        wheels(stated[i][1], stated[i][2]);
+        take(1000);
+        TEST_ASSERT_TRUE(k.leapt);
+    }
+}
+
+// An origin that was asked for is taken in any SIP; after a silence in motion how far the robot got until
+// then is not known.
+void test_an_origin_taken_in_a_silence_in_motion_loses_the_way(void) {
+    for (int silent = 0; silent < 2; silent++) {
+        setUp();
+        sip.x_raw = 3000;
+        wheels(400, 400);
+        take(1000);
+        argus_knowledge_origin_due(&k);
+        now_ms += silent != 0 ? 3000 : 0;
+        sip.x_raw = 20;
+        take(1000);
+        TEST_ASSERT_EQUAL(silent, k.leapt);
+        TEST_ASSERT_EQUAL(silent, k.leaps_unseen);
+    }
+}

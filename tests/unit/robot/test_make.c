@@ -261,3 +261,55 @@ void test_a_name_as_long_as_there_is_room_for_is_taken_whole(void) {
         TEST_ASSERT_TRUE(!fits || strcmp(own.rows[0].name, name) == 0);
     }
 }
+
+// Eight sonars 30 degrees apart, none of which looks astern; the middle four face forward.
+static void fan(void) {
+    ring.sonars = 8;
+    ring.forward_count = 4;
+    for (int i = 0; i < 8; i++) {
+        const bool ahead = i >= 2 && i < 6;
+        mounts[i] =
+            (argus_sonar_mount_t){(int16_t)(ahead ? 100 : -100), (int16_t)(70 - 20 * i),
+                                  (int16_t)(105 - 30 * i), ahead ? ARGUS_ROLE_AHEAD : ARGUS_ROLE_NONE};
+        ring.forward[i % 4] = (uint8_t)(2 + i % 4);
+    }
+}
+
+void test_sectors_beside_sonars_guard_where_they_are_told_to(void) {
+    if (ARGUS_SONARS <= 16) {
+        TEST_IGNORE_MESSAGE("a small build takes no laser");
+    }
+    fan();
+    for (int guards = 0; guards < 2; guards++) {
+        ring.sectors = 6, ring.field_deg = 180, ring.guards = guards;
+        TEST_ASSERT_EQUAL(ARGUS_RING_OK, argus_robot_make(&own, &ring).fault);
+        const argus_robot_t *const robot = &own.rows[0];
+        TEST_ASSERT_EQUAL(guards, (argus_robot_ahead(robot) & argus_robot_sectors(robot)) != 0);
+    }
+}
+
+// What it backs into head-on is seen so far before its end as the hindmost of those that look astern sits;
+// where none looks there, from the centre on.
+void test_without_a_sonar_that_looks_astern_the_overhang_is_the_whole_rear(void) {
+    fan();
+    TEST_ASSERT_EQUAL(ARGUS_RING_OK, argus_robot_make(&own, &ring).fault);
+    TEST_ASSERT_EQUAL_INT32(ring.rear_mm, own.rows[0].rear_overhang_mm);
+    mounts[7].heading_deg = 165;
+    TEST_ASSERT_EQUAL(ARGUS_RING_OK, argus_robot_make(&own, &ring).fault);
+    TEST_ASSERT_EQUAL_INT32(ring.rear_mm - 100, own.rows[0].rear_overhang_mm);
+}
+
+// Likewise of a robot that leads with its rear: where none looks back, from the centre on.
+void test_without_a_sonar_straight_ahead_the_turned_overhang_is_the_whole_front(void) {
+    static const int16_t headings_deg[] = {90, 45, -90, -135};
+    ring.sonars = 4;
+    ring.forward_count = 2;
+    for (int i = 0; i < 4; i++) {
+        mounts[i] = (argus_sonar_mount_t){(int16_t)(i < 2 ? 100 : -100), 0, headings_deg[i],
+                                          i < 2 ? ARGUS_ROLE_AHEAD : ARGUS_ROLE_ASTERN};
+        ring.forward[i % 2] = (uint8_t)(i % 2);
+    }
+    TEST_ASSERT_EQUAL(ARGUS_RING_OK, argus_robot_make(&own, &ring).fault);
+    TEST_ASSERT_NOT_NULL(argus_robot_other_end(&own.rows[0]));
+    TEST_ASSERT_EQUAL_INT32(own.rows[1].rear_mm, own.rows[1].rear_overhang_mm);
+}

@@ -164,3 +164,51 @@ void test_a_body_that_changes_forgets_each_health_that_may_be_forgotten(void) {
         TEST_ASSERT_EQUAL(ARGUS_UNKNOWN, core->knowledge.sonar[i].health);
     }
 }
+
+// Sonars that the robot should not have: with room for more, it is another body, and is not driven. A build
+// that manages no more than the robot has tells of it and goes on.
+void test_strange_sonars_show_another_body_where_more_could_be_managed(void) {
+    static argus_own_robot_t own;
+    for (int all = 0; all < 2; all++) {
+        setUp();
+        argus_robot_t *const row = &own.rows[0];
+        *row = *core->knowledge.robot;
+        row->poses = (int16_t)((const char *)own.poses - (const char *)row);
+        row->sonars = (uint8_t)(ARGUS_SONARS - (all != 0 ? 0 : 1));
+        core->knowledge.robot = row;
+        core->orders.passive = false;
+        core->orders.bar = ARGUS_BAR_NONE;
+        core->knowledge.strange_sips = 0;
+        TEST_ASSERT_FALSE(argus_sees_through_body(core, &core->orders, &core->events));
+        for (int n = 1; n < UINT8_MAX && core->events.count == 0; n++) {
+            core->knowledge.strange_sips = (uint8_t)n;
+            TEST_ASSERT_EQUAL(all == 0 && core->events.count != 0,
+                              argus_sees_through_body(core, &core->orders, &core->events) && all == 0);
+        }
+        TEST_ASSERT_EQUAL(all == 0, core->orders.passive);
+        TEST_ASSERT_EQUAL(all == 0 ? ARGUS_BAR_SONARS : ARGUS_BAR_NONE, core->orders.bar);
+    }
+}
+
+// A ring that the settings could not be driven with, in normal driving or in steps, is not taken.
+void test_a_ring_that_would_not_be_safe_is_not_taken(void) {
+    static argus_storage_t storage;
+    static argus_robot_storage_t taken;
+    static argus_sonar_mount_t mounts[2] = {{100, 60, 20, ARGUS_ROLE_AHEAD},
+                                            {100, -60, -20, ARGUS_ROLE_AHEAD}};
+    argus_ring_t ring = {.name = "own", .mounts = mounts, .sonars = 2, .forward = {0, 1}, .forward_count = 2};
+    ring.front_mm = ring.rear_mm = 200;
+    ring.width_mm = 300;
+    for (int step = 0; step < 2; step++) {
+        argus_config_t config;
+        argus_config_default(&config);
+        config.speed_mm_s = step != 0 ? config.speed_mm_s : 750;
+        config.object_range_mm = step != 0 ? 1000 : 150;
+        config.check_range_mm = step != 0 ? 200 : 1500;
+        argus_t *const argus = argus_init(&storage, &config, 0);
+        TEST_ASSERT_EQUAL(ARGUS_RING_UNSAFE, argus_set_ring(argus, &taken, &ring).fault);
+        const argus_robot_t *const row = &((argus_own_robot_t *)&taken)->rows[0];
+        TEST_ASSERT_EQUAL(step != 0 ? ARGUS_CONFIG_STEP : ARGUS_CONFIG_DRIVING,
+                          argus_config_check_for(&argus->config, row).fault);
+    }
+}

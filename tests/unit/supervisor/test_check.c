@@ -129,3 +129,13 @@ void test_looks_say_nothing_of_one_that_is_out(void) {
     TEST_ASSERT_EQUAL(ARGUS_DISABLED, sonar(AHEAD)->health);
     TEST_ASSERT_EQUAL(0, events(ARGUS_EV_SONAR_CLEARED));
 }
+
+// By the rules of the paper a check is due so long after the last one, a concluded one included.
+void test_a_check_that_is_concluded_is_the_last_one(void) {
+    begin(ARGUS_PROFILE_PAPER);
+    core->mode = ARGUS_MODE_CHECKING;
+    core->looks.check_ms = core->now_ms - 100000;
+    argus_intent_t intent = {0};
+    argus_conclude_check(core, &intent);
+    TEST_ASSERT_EQUAL_UINT32(core->now_ms, core->looks.check_ms);
+}

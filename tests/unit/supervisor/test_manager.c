@@ -115,6 +115,19 @@ void test_bad_courses_change_nothing(void) {
 }
 
 // The last four commands are SONAR 0, STOP, ENABLE 0, CLOSE, after the robot has come to rest.
+static int motions(int from) {
+    static const uint8_t all[] = {ARCOS_CMD_MOVE, ARCOS_CMD_HEAD, ARCOS_CMD_DHEAD, ARCOS_CMD_ROTATE,
+                                  ARCOS_CMD_VEL2};
+    int count = 0;
+    for (size_t i = 0; i < sizeof all; i++) {
+        count += robot_count_commands(&robot, all[i], from);
+    }
+    for (int i = from; i < robot.commands; i++) {
+        count += robot.command[i].command == ARCOS_CMD_ENABLE && robot.command[i].argument != 0;
+    }
+    return count;
+}
+
 static void expect_orderly_end(void) {
     static const uint8_t last[] = {ARCOS_CMD_SONAR, ARCOS_CMD_STOP, ARCOS_CMD_ENABLE, ARCOS_CMD_CLOSE};
     TEST_ASSERT_TRUE(argus_closed(&robot.argus));
@@ -175,6 +188,31 @@ void test_shutdown_at_every_moment_of_the_opening_leaves_no_session_behind(void)
         TEST_ASSERT_EQUAL(from, robot.commands);
         finish();
     }
+}
+
+// What comes back after the end is not taken up again.
+void test_a_link_that_comes_back_after_the_end_moves_nothing(void) {
+    start_idle();
+    TEST_ASSERT_TRUE(robot_goal(&robot, 5000, 0));
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 5000));
+    argus_shutdown(&robot.argus, now());
+    argus_link_lost(&robot.argus, now());
+    TEST_ASSERT_TRUE(argus_closed(&robot.argus));
+    argus_link_up(&robot.argus, now());
+    const int from = robot.commands;
+    robot_run(&robot, 6000);
+    TEST_ASSERT_TRUE(argus_closed(&robot.argus));
+    TEST_ASSERT_EQUAL(0, motions(from));
+    finish();
+}
+
+// A link that was lost before the first SIP was never silent.
+void test_a_link_lost_before_the_first_sip_has_no_silence(void) {
+    start();
+    argus_link_lost(&robot.argus, now());
+    robot_drain(&robot);
+    TEST_ASSERT_EQUAL(1, robot_count_events(&robot, ARGUS_EV_LINK_LOST, 0));
+    TEST_ASSERT_EQUAL_INT32(0, robot_last_event(&robot, ARGUS_EV_LINK_LOST)->value);
 }
 
 void test_stop_and_go(void) {
@@ -274,19 +312,6 @@ void test_recheck_runs_a_full_check(void) {
     TEST_ASSERT_EQUAL(ARGUS_MODE_CHECKING, robot.argus.mode);
     TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_HEALTH_CHECK, 5000));
     finish();
-}
-
-static int motions(int from) {
-    static const uint8_t all[] = {ARCOS_CMD_MOVE, ARCOS_CMD_HEAD, ARCOS_CMD_DHEAD, ARCOS_CMD_ROTATE,
-                                  ARCOS_CMD_VEL2};
-    int count = 0;
-    for (size_t i = 0; i < sizeof all; i++) {
-        count += robot_count_commands(&robot, all[i], from);
-    }
-    for (int i = from; i < robot.commands; i++) {
-        count += robot.command[i].command == ARCOS_CMD_ENABLE && robot.command[i].argument != 0;
-    }
-    return count;
 }
 
 void test_passive_reports_and_never_moves(void) {

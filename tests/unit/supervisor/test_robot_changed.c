@@ -151,6 +151,15 @@ void test_what_was_known_of_the_first_one_is_forgotten(void) {
     TEST_ASSERT_EQUAL_INT(0, motions());
 }
 
+// What the record said of the first one protects none of another's sonars.
+void test_no_record_of_the_first_one_is_left(void) {
+    robot.argus.history.recorded = 1u << 3 | 1u << 12;
+    robot.subclass = "p3at-sh";
+    reopen();
+    TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_OTHER_ROBOT, 12000));
+    TEST_ASSERT_EQUAL_HEX32(0, robot.argus.history.recorded);
+}
+
 static uint32_t seed;
 
 static uint32_t draw(uint32_t below) {

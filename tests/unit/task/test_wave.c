@@ -78,3 +78,15 @@ void test_what_stopped_the_robot_is_taken_within_the_window_only(void) {
         TEST_ASSERT_TRUE(news == ARGUS_WAVE_THERE || news == ARGUS_WAVE_DEAD);
     }
 }
+
+// However long the way is, a search ends.
+void test_at_its_last_step_a_wave_that_has_not_come_is_dead(void) {
+    for (uint16_t step = 999; step <= 1000; step++) {
+        setUp();
+        begin(3000, 0, false);
+        wave.step = step;
+        int32_t work = 0;
+        TEST_ASSERT_EQUAL(step < 1000 ? ARGUS_WAVE_SPREADS : ARGUS_WAVE_DEAD,
+                          argus_wave_spread(&wave, &work));
+    }
+}

@@ -234,6 +234,17 @@ void test_a_search_for_another_waypoint_begins_anew(void) {
     TEST_ASSERT_EQUAL(-1000, search.leg.to.x_mm);
 }
 
+void test_each_coordinate_makes_another_waypoint(void) {
+    for (int axis = 0; axis < 2; axis++) {
+        setUp();
+        long_wall();
+        TEST_ASSERT_EQUAL(ARGUS_SEARCH_GOES_ON, searches(3000, -1000));
+        argus_grid_clear(&g);
+        TEST_ASSERT_EQUAL(ARGUS_SEARCH_FOUND, axis == 0 ? searches(2000, -1000) : searches(3000, 500));
+        TEST_ASSERT_TRUE(search.leg.direct);
+    }
+}
+
 // What the grid was then says nothing any more.
 void test_a_search_that_was_left_for_a_sip_begins_anew(void) {
     long_wall();
@@ -303,4 +314,27 @@ void test_a_narrow_leg_is_free_where_a_wide_one_is_not(void) {
         only_narrow += lets_narrow && !argus_way_is_free(&ground, &wide) ? 1 : 0;
     }
     TEST_ASSERT_GREATER_THAN(0, only_narrow);
+}
+
+// Wherever it stands in its cell, with a wall wherever that is near: a leg is either the whole way or so long
+// that it is not done at once.
+void test_no_leg_is_done_at_once(void) {
+    int legs = 0;
+    for (int at = 0; at < 25; at++) {
+        for (int wall_mm = 120; wall_mm <= 420; wall_mm += 20) {
+            setUp();
+            const int x = at % 5 * 25 + 10, y = at / 5 * 25 + 10;
+            wall(x - wall_mm, -400, x - wall_mm, 400);
+            wall(1000, -1500, 1000, 1500);
+            k.pose.x_mm = x;
+            k.pose.y_mm = y;
+            if (finds(2500, 0) && !leg.direct) {
+                legs++;
+                snprintf(text, sizeof text, "from %d, %d, wall at %d", x, y, wall_mm);
+                const int32_t mm = argus_hypot(leg.to.x_mm - x, leg.to.y_mm - y);
+                TEST_ASSERT_TRUE_MESSAGE(mm >= 100, text);
+            }
+        }
+    }
+    TEST_ASSERT_GREATER_THAN(0, legs);
 }
