@@ -168,3 +168,15 @@ void test_no_readings_no_slant(void) {
         way_mm += STEP_MM;
     }
 }
+
+// Two readings show a slant from a way of 80 mm on.
+void test_a_slant_takes_a_way(void) {
+    for (int way = 70; way <= 90; way += 2) {
+        setUp();
+        for (int part = 0; part <= 2; part++) {
+            way_mm = way * part / 2.0;
+            read_at(0, 200 - 15 * part);
+        }
+        TEST_ASSERT_EQUAL(way >= 80, argus_grazing_wall(&e.pings[0], k.robot, 0, STOP_MM));
+    }
+}

@@ -42,6 +42,7 @@ void test_the_worked_example_at_rest(void) {
     TEST_ASSERT_EQUAL(2, sip.sonar_count);
     assert_sonar(0, 0, 5000);
     assert_sonar(1, 8, 1234);
+    assert_sonar(2, 0xA5, 0xA5A5); // no more than are listed
     TEST_ASSERT_TRUE(sip.has_battery_x10 && sip.has_rotvel && sip.has_faultflags);
     TEST_ASSERT_EQUAL(128, sip.battery_x10_dv);
     TEST_ASSERT_EQUAL(0, sip.rotvel_ddeg_s);

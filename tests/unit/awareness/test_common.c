@@ -155,6 +155,19 @@ void test_a_wall_beside_tells_less_where_those_abeam_are_deaf(void) {
     }
 }
 
+// ... on the side of that wall.
+void test_a_wall_tells_by_those_on_its_own_side(void) {
+    for (int deaf_left = 0; deaf_left < 2; deaf_left++) {
+        setUp();
+        make_deaf(deaf_left != 0 ? 1u << 0 : 1u << 7, 9);
+        make_deaf((FRONT | REAR) & ~(deaf_left != 0 ? 1u << 0 : 1u << 7), 0);
+        darken(FRONT);
+        drive(40, 200);
+        const int32_t left_mm = c.of[0].passed[1].mm, right_mm = c.of[0].passed[0].mm;
+        TEST_ASSERT_TRUE(deaf_left != 0 ? left_mm < right_mm : right_mm < left_mm);
+    }
+}
+
 // Five or six may be what a person leaves behind: they are given up when their silence lasts.
 void test_five_of_an_array_are_given_up_later(void) {
     for (unsigned hearing = 2; hearing < 4; hearing++) {

@@ -275,3 +275,16 @@ void test_a_name_takes_exactly_what_it_takes(void) {
         TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, named());
     }
 }
+
+// Of an offset the bound itself is enough, and one less is not.
+void test_an_offset_is_named_from_its_bound_on(void) {
+    give_ground();
+    c->score[ARGUS_TEST_PEERS] = ARGUS_OFFSET_CONTRADICTED;
+    for (int less = 0; less < 2; less++) {
+        c->hypothesis[ARGUS_LAGS] =
+            (argus_hypothesis_t){(int16_t)(ARGUS_OFFSET_NAMING - less), ARGUS_OFFSET_LEAD};
+        TEST_ASSERT_EQUAL(less == 0 ? ARGUS_KIND_WRONG : ARGUS_KIND_NONE, named());
+    }
+    c->hypothesis[ARGUS_LAGS] = (argus_hypothesis_t){ARGUS_OFFSET_NAMING, ARGUS_OFFSET_LEAD - 1};
+    TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, named());
+}

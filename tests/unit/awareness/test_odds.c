@@ -133,3 +133,13 @@ void test_deafness_fades_and_does_not_overflow(void) {
     TEST_ASSERT_TRUE(argus_odds_deaf_permille(&e, ME) <= deaf);
     TEST_ASSERT_TRUE(e.deaf[ME].all < 120 * ARGUS_RATE_ONE);
 }
+
+// Of one that nothing is known of, as often as is taken for granted.
+void test_a_fresh_sonar_is_as_deaf_as_is_taken_for_granted(void) {
+    TEST_ASSERT_EQUAL_INT32(1000 / ARGUS_DEAF_EARLIER, argus_odds_deaf_permille(&e, ME));
+    for (int i = 0; i < 20; i++) { // others hear all
+        argus_odds_note_deaf(&e, 5, false);
+    }
+    const int32_t less = argus_odds_deaf_permille(&e, ME);
+    TEST_ASSERT_TRUE(less > 0 && less < 1000 / ARGUS_DEAF_EARLIER);
+}

@@ -209,3 +209,18 @@ void test_s2_backing_halts_where_the_rear_is_not_watched(void) {
     argus_run_backing(core, &intent);
     TEST_ASSERT_EQUAL(ARGUS_STOP_HALT, intent.stop);
 }
+
+// What counts is read since the motion ended; a robot that is only watched has none.
+void test_a_check_counts_from_the_end_of_the_motion(void) {
+    for (int passive = 0; passive < 2; passive++) {
+        setUp();
+        core->orders.passive = passive != 0;
+        core->mode = ARGUS_MODE_CHECKING;
+        core->checking = (argus_checking_t){.rounds = 2};
+        core->motion.mark = argus_mark_now(&core->knowledge);
+        core->motion.mark.sip -= 3;
+        argus_run_checking(core, &core->checking, &intent);
+        TEST_ASSERT_TRUE(core->checking.marked);
+        TEST_ASSERT_EQUAL_UINT32(core->knowledge.sips - (passive != 0 ? 0 : 3), core->checking.mark.sip);
+    }
+}

@@ -163,3 +163,17 @@ void test_the_way_back_is_felt_where_it_creeps_and_asked_for_by_an_active_robot_
     core->knowledge.bumpers_rear = 8;
     TEST_ASSERT_FALSE(argus_guard_may_back(&guard));
 }
+
+// Each policy is what is set, but the adaptive one where the rules know none.
+void test_the_policy_is_what_is_set_as_far_as_the_rules_know_it(void) {
+    begin_in(3000, 3000);
+    argus_profile_t rules = *argus_rules(core);
+    core->rules = &rules;
+    for (int adapts = 0; adapts < 2; adapts++) {
+        rules.adapts_plan = adapts != 0;
+        core->config.policy = ARGUS_POLICY_PAPER;
+        TEST_ASSERT_EQUAL(ARGUS_POLICY_PAPER, argus_policy(core));
+        core->config.policy = ARGUS_POLICY_ADAPTIVE;
+        TEST_ASSERT_EQUAL(adapts != 0 ? ARGUS_POLICY_ADAPTIVE : ARGUS_POLICY_PAPER, argus_policy(core));
+    }
+}

@@ -304,3 +304,16 @@ void test_a_place_beyond_16_bits_is_not_remembered(void) {
     argus_echoes_touched(&e, (argus_point_t){INT16_MAX, -INT16_MAX}, k.sip_ms);
     TEST_ASSERT_EQUAL(1, e.count);
 }
+
+// A turn sweeps nothing from a metre on.
+void test_what_lies_a_metre_off_is_about_the_robot_no_more(void) {
+    for (int mm = 998; mm <= 1002; mm++) {
+        for (int axis = 0; axis < 2; axis++) {
+            setUp();
+            argus_point_t at;
+            place_echo(&e, &k, axis == 0 ? mm : 0, axis == 0 ? 0 : -mm);
+            e.at[0].again = true;
+            TEST_ASSERT_EQUAL(mm < 1000, argus_echoes_beside(&e, &k, 0, &at));
+        }
+    }
+}

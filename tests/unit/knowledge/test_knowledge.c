@@ -419,3 +419,21 @@ void test_an_origin_taken_in_a_silence_in_motion_loses_the_way(void) {
         TEST_ASSERT_EQUAL(silent, k.leaps_unseen);
     }
 }
+
+// A turn weighs as a way does, in units of the odometry: one that turns where it stands has not restarted.
+void test_a_turn_where_it_stands_is_no_origin(void) {
+    sip.x_raw = 1000;
+    take(1000);
+    wheels(-200, 200);
+    for (int i = 1; i <= 10; i++) {
+        sip.heading_raw = (int16_t)(8 * i);
+        take(1000);
+    }
+    const int32_t before_cdeg = k.pose.heading_cdeg;
+    argus_knowledge_origin_due(&k);
+    wheels(200, -200);
+    sip.heading_raw = 0;
+    take(1000);
+    TEST_ASSERT_FALSE(k.leapt);
+    TEST_ASSERT_INT32_WITHIN(20, before_cdeg - 703, k.pose.heading_cdeg);
+}

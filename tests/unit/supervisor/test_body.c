@@ -212,3 +212,20 @@ void test_a_ring_that_would_not_be_safe_is_not_taken(void) {
                           argus_config_check_for(&argus->config, row).fault);
     }
 }
+
+// What is said of a robot that may not be driven is the way that is too long: in normal driving, else in a
+// step.
+void test_a_bar_says_which_way_is_too_long(void) {
+    for (int step = 0; step < 2; step++) {
+        setUp();
+        core->config.speed_mm_s = step != 0 ? core->config.speed_mm_s : 750;
+        core->config.object_range_mm = step != 0 ? 1000 : 150;
+        core->config.check_range_mm = step != 0 ? 200 : 1500;
+        const argus_config_report_t report = argus_config_check_for(&core->config, core->knowledge.robot);
+        TEST_ASSERT_EQUAL(step != 0 ? ARGUS_CONFIG_STEP : ARGUS_CONFIG_DRIVING, report.fault);
+        TEST_ASSERT_TRUE(argus_find_bar(core, &core->orders, &core->events));
+        robot_drain(&robot);
+        TEST_ASSERT_EQUAL_INT32(step != 0 ? report.stepping_mm : report.driving_mm,
+                                robot_last_event(&robot, ARGUS_EV_ROBOT_UNSAFE)->value);
+    }
+}

@@ -49,6 +49,7 @@ void test_a_suspicion_that_nobody_verifies_lasts_as_long_as_the_disparity(void) 
     TEST_ASSERT_EQUAL(ARGUS_HEALTHY, sonar(AHEAD)->health);
     TEST_ASSERT_EQUAL(ARGUS_SUSPECT, sonar(9)->health); // none that the disparity is asked of
     TEST_ASSERT_EQUAL(1, events(ARGUS_EV_SUSPICION_DROPPED));
+    TEST_ASSERT_EQUAL_INT32(0, robot_last_event(&robot, ARGUS_EV_SUSPICION_DROPPED)->value);
     TEST_ASSERT_EQUAL(ARGUS_DO_NOTHING, intent.act);
 }
 

@@ -6,6 +6,7 @@
 #include "behaviour/state.h"
 #include "health.h"
 #include "robot.h"
+#include "supervisor/journey.h"
 #include "unity.h"
 
 static robot_t robot;
@@ -128,4 +129,26 @@ void test_s1_a_plan_that_covers_no_more_breaks_the_way_off(void) {
     for (size_t i = 0; i < sizeof ways / sizeof ways[0]; i++) {
         TEST_ASSERT_NOT_EQUAL(ways[i], after_loss_in(ways[i]));
     }
+}
+
+// Nobody knows what happened while it was only watched: the check is a full one, whatever was checked before.
+void test_active_begins_with_a_full_check(void) {
+    argus_obey(core, ARGUS_OP_PASSIVE, 0);
+    robot_run(&robot, 1000);
+    core->checked = true;
+    argus_obey(core, ARGUS_OP_ACTIVE, 0);
+    TEST_ASSERT_EQUAL(ARGUS_MODE_CHECKING, core->mode);
+    TEST_ASSERT_EQUAL(core->config.suspect_readings, core->checking.rounds);
+}
+
+// A new course has not arrived.
+void test_a_new_course_is_on_its_way(void) {
+    static const argus_point_t to = {2000, 0};
+    core->travel.arriving = true;
+    core->orders.paused = true;
+    TEST_ASSERT_TRUE(argus_journey_set(&core->travel, &to, 1));
+    TEST_ASSERT_FALSE(core->travel.arriving);
+    core->travel.arriving = true;
+    TEST_ASSERT_FALSE(argus_journey_set(&core->travel, &to, 0));
+    TEST_ASSERT_TRUE(core->travel.arriving);
 }

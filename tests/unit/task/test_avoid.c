@@ -286,3 +286,15 @@ void test_a_leg_that_was_given_up_is_not_kept(void) {
     argus_task_keep(&t, &k, &e);
     TEST_ASSERT_FALSE(t.has_leg);
 }
+
+// The first way is no set-back, and a shorter one is none; a longer one is, once.
+void test_a_set_back_is_a_way_that_has_grown(void) {
+    TEST_ASSERT_TRUE(chooses());
+    argus_task_is_hopeless(&t, &k, true);
+    TEST_ASSERT_EQUAL(0, t.progress.set_backs);
+    wall(1500, -3500, 1500, 3500);
+    t.has_leg = false;
+    TEST_ASSERT_TRUE(chooses());
+    argus_task_is_hopeless(&t, &k, true);
+    TEST_ASSERT_EQUAL(1, t.progress.set_backs);
+}
