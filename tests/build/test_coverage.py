@@ -55,12 +55,23 @@ def test_nothing_measured_fails() -> None:
     """A run that counted nothing has shown nothing."""
     with pytest.raises(StageFailed, match="nothing was measured"):
         coverage.judge([])
+    with pytest.raises(StageFailed, match="nothing was measured"):
+        coverage.judge_hal([ALL])
+
+
+def test_lines_of_hal_have_a_floor_of_their_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What the firmware's tests reach says nothing of hal/."""
+    monkeypatch.setattr(coverage, "floors", lambda: {"hal_lines": 95.0})
+    hal = File("hal/linux/a.c", Reached(95, 100), Reached(1, 100))
+    assert coverage.judge_hal([ALL, hal]) == "hal/: lines 95.00 %"
+    with pytest.raises(StageFailed, match=r"lines of hal/: 94\.50 %"):
+        coverage.judge_hal([ALL, hal, File("hal/linux/b.c", Reached(94, 100), Reached(1, 1))])
 
 
 def test_floors_are_near_what_is_promised() -> None:
     """The floors are percentages, and none is so low that it holds nothing."""
     floors = coverage.floors()
-    assert set(floors) == {"lines", "branches", "branches_of_a_file", "mcdc"}
+    assert set(floors) == {"lines", "branches", "branches_of_a_file", "mcdc", "hal_lines"}
     assert all(50.0 <= value <= 100.0 for value in floors.values())
 
 

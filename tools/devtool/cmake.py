@@ -21,7 +21,7 @@ ELSEWHERE: Final = ("blank", "mps2-tests", "stm32f405-tests", "big-endian")
 """Those whose programs run on another machine."""
 TO_RUN: Final = ("argusd", "argus_shared", "argus_sim")
 """What is built to run the programs: no tests, which take most of the time."""
-WITHOUT_ARGUSD: Final = ("m32", "cortex-m4", "coverage", "mcdc", *BOARDS, *ELSEWHERE)
+WITHOUT_ARGUSD: Final = ("m32", "cortex-m4", "coverage", "mcdc", "threads", *BOARDS, *ELSEWHERE)
 SOAK: Final = "soak"
 """The label of the unit tests that compute for long; they are run once, in the release build."""
 WAITING: Final = 2

@@ -247,6 +247,24 @@ def run_hil(run: Run) -> list[File]:
     return by_gcc(run, "coverage-hal", "firmware", "hal", pages=True)
 
 
+def judge_hal(files: Sequence[File]) -> str:
+    """Return what is reached of the lines of hal/; a stage fails where that is too little, or nothing was measured."""
+    lines = total_of(file for file in files if file.name.startswith("hal/")).lines
+    if not lines.total:
+        raise StageFailed("nothing was measured")
+    least = floors()["hal_lines"]
+    if lines.percent < least:
+        raise StageFailed(
+            f"lines of hal/: {lines.percent:.2f} % of at least {least} %; see tools/dev coverage --hil"
+        )
+    return f"hal/: lines {lines.percent:.2f} %"
+
+
+def hal_coverage_stage(run: Run) -> str:
+    """Measure the lines of hal/, with the tests over ptys, and hold them to their floor."""
+    return judge_hal(run_hil(run))
+
+
 def do_coverage(args: argparse.Namespace) -> int:
     """Measure what the unit tests reach, file by file."""
     found = modern_clang() if args.mcdc else None

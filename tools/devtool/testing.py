@@ -11,7 +11,7 @@ from typing import Final
 from devtool.base import BUILD, CORES, ROOT, VENV, Command, Run
 from devtool.browser import monitor_tests
 from devtool.cmake import BOARDS, SOAK, TOUR, WIDE, build, build_and_test, ctest
-from devtool.coverage import coverage_stage, mcdc_stage
+from devtool.coverage import coverage_stage, hal_coverage_stage, mcdc_stage
 from devtool.docs import site_tests
 from devtool.misra import misra
 from devtool.packaging import NEEDS as PACKAGE_NEEDS
@@ -51,6 +51,13 @@ def ctest_stage(preset: str, what: str) -> Stage:
     return Stage(preset, what, lambda run: build_and_test(preset, run), (preset,))
 
 
+def sanitize_tests(run: Run) -> None:
+    """Run the C unit tests under clang's sanitizers; those of what has threads under that of threads, too."""
+    build_and_test("sanitize", run)
+    build("threads", run, targets=THREADED)
+    ctest("threads", run, "-R", f"^({'|'.join(THREADED)})$")
+
+
 def python_tests(run: Run) -> None:
     """Run the Python tests that compute."""
     build("release", run)
@@ -58,6 +65,8 @@ def python_tests(run: Run) -> None:
     run([*PYTEST, *COMPUTING, "-m", f"not {SOAK} and not {WIDE}", *SHARED_OUT])
 
 
+THREADED: Final = ("hal.posix.test_recorder",)
+"""What has threads: records are written by one of their own."""
 VALGRIND: Final = """\
 #!/bin/sh
 exec valgrind --quiet --error-exitcode=99 --leak-check=full --errors-for-leak-kinds=definite --log-file={log} \\
@@ -191,6 +200,13 @@ SOAK_STAGES: Final = (
         mcdc_stage,
     ),
     Stage(
+        "coverage-hal",
+        "lines of hal/ and argusd that their tests reach, those over ptys included, against tests/coverage.toml",
+        hal_coverage_stage,
+        ("coverage-hal", "release"),
+        real_time=True,
+    ),
+    Stage(
         "misra",
         "rules of MISRA C:2012 that firmware/ breaks, against the deviations of docs/misra.md",
         misra,
@@ -221,8 +237,11 @@ TEST_STAGES: Final = (
     TABLES,
     RELEASE,
     Stage("hil", "argusd against the emulated robot over ptys", hil_tests, ("release",), real_time=True),
-    ctest_stage(
-        "sanitize", "C unit tests, built by clang with its address and undefined-behaviour sanitizers"
+    Stage(
+        "sanitize",
+        "C unit tests, built by clang with its address and undefined-behaviour sanitizers, and that of threads",
+        sanitize_tests,
+        ("sanitize", "threads"),
     ),
     ctest_stage("m32", "C unit tests, 32 bit"),
     Stage(
