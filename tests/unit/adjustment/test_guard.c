@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "adjustment/plan.h"
+#include "echo.h"
 #include "health.h"
 #include "knowledge/angle.h"
 #include "knowledge/config.h"
@@ -530,5 +531,20 @@ void test_s5_doubt_slows_by_the_rules_that_drive_with_it(void) {
                                    : argus_guard_free_speed_mm_s(&g, INT32_MAX),
                               mm_s);
         }
+    }
+}
+
+// What was heard twice a moment ago bars a nudge like what is heard now; the last of many as the first.
+void test_s7_no_nudge_brings_the_body_near_what_is_remembered(void) {
+    use(ARGUS_PROFILE_ARGUS);
+    TEST_ASSERT_TRUE(argus_guard_may_nudge(&g, 1000));
+    for (int others = 0; others < 3; others++) {
+        e.count = 0;
+        for (int i = 0; i <= others; i++) {
+            place_echo(&e, &k, i < others ? 900 : 0,
+                       i < others ? 100 * i : argus_robot_half_width_mm(k.robot) + 5);
+            e.at[i].again = true;
+        }
+        TEST_ASSERT_FALSE(argus_guard_may_nudge(&g, 1000));
     }
 }

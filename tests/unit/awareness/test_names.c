@@ -288,3 +288,20 @@ void test_an_offset_is_named_from_its_bound_on(void) {
     c->hypothesis[ARGUS_LAGS] = (argus_hypothesis_t){ARGUS_OFFSET_NAMING, ARGUS_OFFSET_LEAD - 1};
     TEST_ASSERT_EQUAL(ARGUS_KIND_NONE, named());
 }
+
+// A suspicion begins at its share of what a name takes, and is held above another.
+void test_a_suspicion_begins_at_its_bound(void) {
+    for (int test = 0; test < ARGUS_TESTS; test++) {
+        setUp();
+        give_ground();
+        const int32_t bound = argus_bounds[test].naming * ARGUS_SUSPECT_PERCENT / 100;
+        c->score[test] = (int16_t)(bound - 1);
+        TEST_ASSERT_FALSE(argus_evidence_suspects(&e, SONAR));
+        c->score[test] = (int16_t)bound;
+        TEST_ASSERT_TRUE(argus_evidence_suspects(&e, SONAR));
+    }
+    setUp();
+    const int32_t held = argus_bounds[ARGUS_TEST_PEERS].naming * ARGUS_HELD_PERCENT / 100;
+    c->score[ARGUS_TEST_PEERS] = (int16_t)held;
+    TEST_ASSERT_FALSE(argus_evidence_holds(&e, SONAR));
+}

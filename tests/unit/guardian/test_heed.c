@@ -89,3 +89,15 @@ void test_the_weakest_brake_is_the_limit(void) {
     }
     TEST_ASSERT_EQUAL_INT(4, sips);
 }
+
+// One SIP in which it keeps to the order begins the count anew.
+void test_what_was_beyond_before_it_obeyed_does_not_count(void) {
+    TEST_ASSERT_FALSE(sip(0, 300, 0));
+    TEST_ASSERT_FALSE(sip(0, 300, 0));
+    TEST_ASSERT_FALSE(sip(0, 300, 0));
+    TEST_ASSERT_FALSE(sip(0, 0, 0));
+    for (int i = 0; i < 3; i++) {
+        TEST_ASSERT_FALSE(sip(0, 300, 0));
+    }
+    TEST_ASSERT_TRUE(sip(0, 300, 0));
+}

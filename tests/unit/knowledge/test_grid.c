@@ -268,3 +268,15 @@ void test_a_robot_put_elsewhere_on_one_axis_alone(void) {
         TEST_ASSERT_TRUE(is_there(at));
     }
 }
+
+// Two echoes of a wall abeam tell where it goes on from 80 mm between them on, and up to 300.
+void test_a_wall_goes_on_by_two_echoes_that_lie_apart(void) {
+    for (int mm = 70; mm <= 310; mm += 10) {
+        setUp();
+        reads(0, 300);
+        k.pose.x_mm = mm;
+        reads(0, 300);
+        const argus_point_t last = echo_of(0);
+        TEST_ASSERT_EQUAL(mm >= 80 && mm <= 300, is_there((argus_point_t){last.x_mm + 480, last.y_mm}));
+    }
+}

@@ -437,3 +437,16 @@ void test_a_turn_where_it_stands_is_no_origin(void) {
     TEST_ASSERT_FALSE(k.leapt);
     TEST_ASSERT_INT32_WITHIN(20, before_cdeg - 703, k.pose.heading_cdeg);
 }
+
+// The finer value counts where the SIP has one and the server fills it in.
+void test_the_battery_is_the_finer_value_where_there_is_one(void) {
+    for (int has = 0; has < 2; has++) {
+        for (int value = 0; value <= 125; value += 125) {
+            sip.battery_dv = 120;
+            sip.has_battery_x10 = has != 0;
+            sip.battery_x10_dv = (uint16_t)value;
+            take(1000);
+            TEST_ASSERT_EQUAL(has != 0 && value != 0 ? 125 : 120, k.battery_dv);
+        }
+    }
+}

@@ -3,6 +3,8 @@
 // faster than the robot lets it.
 #include "supervisor/motions.h"
 
+#include <string.h>
+
 #include "robot.h"
 #include "unity.h"
 
@@ -104,4 +106,12 @@ void test_it_is_to_halt_while_it_rolls_or_is_under_way(void) {
     setUp();
     TEST_ASSERT_TRUE(argus_move(core, &core->motion, &out, 300, 100));
     TEST_ASSERT_TRUE(argus_is_to_halt(core));
+}
+
+// The bend of a way is judged since the heading that was ordered last.
+void test_a_heading_on_the_way_is_noted_for_the_bend(void) {
+    static const argus_bend_t none;
+    argus_steer(core, &bend, &out, 500);
+    TEST_ASSERT_NOT_EQUAL(0, memcmp(&none, &bend, sizeof bend));
+    TEST_ASSERT_GREATER_THAN(0, out.length);
 }

@@ -4,6 +4,7 @@
 #include <stdio.h>
 
 #include "robot.h"
+#include "supervisor/robot_changed.h"
 #include "unity.h"
 
 static const uint8_t config_1[] = "\x20"
@@ -158,6 +159,17 @@ void test_no_record_of_the_first_one_is_left(void) {
     reopen();
     TEST_ASSERT_TRUE(robot_until_event(&robot, ARGUS_EV_OTHER_ROBOT, 12000));
     TEST_ASSERT_EQUAL_HEX32(0, robot.argus.history.recorded);
+}
+
+// Nor is an array of another robot doubted because one of the first was.
+void test_no_doubt_of_an_array_of_the_first_one_is_left(void) {
+    robot.argus.common.of[0].sonars = 0xFF;
+    robot.argus.common.of[0].doubted = robot.argus.common.of[0].proven = true;
+    robot.argus.common.sure[3].reading_mm = 1234;
+    argus_robot_changed(&robot.argus);
+    TEST_ASSERT_FALSE(argus_common_doubts(&robot.argus.common, 3) ||
+                      argus_common_convicts(&robot.argus.common, 3));
+    TEST_ASSERT_EQUAL(0, robot.argus.common.sure[3].reading_mm);
 }
 
 static uint32_t seed;
