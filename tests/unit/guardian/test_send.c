@@ -111,3 +111,20 @@ void test_a_clients_settings_are_filled_and_not_replaced(void) {
         TEST_ASSERT_EQUAL(123, settings.setv_mm_s);
     }
 }
+
+// Each setting is noted in its own place, without its sign, and in no other.
+void test_a_setting_is_noted_in_its_place(void) {
+    argus_port_settings_t settings = {0};
+    argus_send_note(&settings, ARCOS_CMD_SETV, -210);
+    argus_send_note(&settings, ARCOS_CMD_SETRV, 31);
+    argus_send_note(&settings, ARCOS_CMD_SETA, 320);
+    argus_send_note(&settings, ARCOS_CMD_SETA, -330);
+    argus_send_note(&settings, ARCOS_CMD_SETRA, 41);
+    argus_send_note(&settings, ARCOS_CMD_SETRA, -42);
+    TEST_ASSERT_EQUAL_INT32(210, settings.setv_mm_s);
+    TEST_ASSERT_EQUAL_INT32(31, settings.setrv_deg_s);
+    TEST_ASSERT_EQUAL_INT32(320, settings.accel_mm_s2);
+    TEST_ASSERT_EQUAL_INT32(330, settings.decel_mm_s2);
+    TEST_ASSERT_EQUAL_INT32(41, settings.turn_accel_deg_s2);
+    TEST_ASSERT_EQUAL_INT32(42, settings.turn_decel_deg_s2);
+}
