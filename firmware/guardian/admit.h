@@ -88,7 +88,7 @@ typedef enum {
     X(GRIPPER, GRIPPER, PASSED, INT, 0, "passed")                                                            \
     X(GRIPPERVAL, GRIPPERVAL, PASSED, INT, 0, "passed")                                                      \
     X(ARM_FIRST, ARM_LAST, PASSED, ANY, 40, "passed")                                                        \
-    X(SIM_LRF_FIRST, SIM_LRF_LAST, PASSED, INT, 100, "passed: a simulator's laser")                          \
+    X(SIM_LRF_ENABLE, SIM_LRF_SET_RES, PASSED, INT, 100, "passed: a simulator's laser")                      \
     X(SIM_STAT, SIM_STAT, PASSED, INT, 40, "passed")
 
 // A command as it was read.

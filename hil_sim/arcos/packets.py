@@ -165,6 +165,52 @@ class GyroPac:
 
 
 @dataclass(frozen=True)
+class SimLaser:
+    """A part of a scan of a simulated laser: ranges in mm from number `first` on, of `total`.
+
+    place: what the odometry says of the robot, mm and degrees; None: the extended form, which has for each range what
+    it was reflected by, 0 for anything plain, and at its end the number of the laser and flags.
+    """
+
+    total: int
+    first: int
+    ranges: tuple[int, ...]
+    place: tuple[int, int, int] | None = None
+    reflectance: tuple[int, ...] = ()
+    rest: bytes = b""
+
+    PLAIN_PLACE: ClassVar[struct.Struct] = struct.Struct("<hhh")
+    COUNTS: ClassVar[struct.Struct] = struct.Struct("<HHB")
+
+    @property
+    def data(self) -> bytes:
+        """The data part of the packet."""
+        counts = self.COUNTS.pack(self.total, self.first, len(self.ranges))
+        if self.place is not None:
+            body = b"".join(mm.to_bytes(2, "little") for mm in self.ranges)
+            return bytes((TYPE["SIMLASER"],)) + self.PLAIN_PLACE.pack(*self.place) + counts + body + self.rest
+        pairs = zip(self.ranges, self.reflectance, strict=True)
+        body = b"".join(struct.pack("<HBH", mm, reflected, 0) for mm, reflected in pairs)
+        return bytes((TYPE["SIMLASER2"],)) + counts + body + self.rest
+
+    @classmethod
+    def decode(cls, data: bytes) -> Self:
+        """Read either form."""
+        is_plain = data[0] == TYPE["SIMLASER"]
+        at = 1 + (cls.PLAIN_PLACE.size if is_plain else 0)
+        end = at + cls.COUNTS.size
+        row = struct.Struct("<H" if is_plain else "<HBH")
+        if len(data) < end or len(data) < end + data[end - 1] * row.size:
+            raise PacketError(f"a part of a scan of {len(data)} bytes is shorter than its count says")
+        total, first, count = cls.COUNTS.unpack_from(data, at)
+        rows = list(row.iter_unpack(data[end : end + count * row.size]))
+        ranges, rest = tuple(one[0] for one in rows), data[end + count * row.size :]
+        if is_plain:
+            return cls(total, first, ranges, cls.PLAIN_PLACE.unpack_from(data, 1), rest=rest)
+        return cls(total, first, ranges, reflectance=tuple(one[1] for one in rows), rest=rest)
+
+
+@dataclass(frozen=True)
 class OtherPacket:
     """A packet whose inside is left as bytes (auxiliary serial data, play list, accessories)."""
 
@@ -178,7 +224,7 @@ class OtherPacket:
 
 
 Packet: TypeAlias = (
-    SyncEcho | SyncReply | Sip | ConfigPac | EncoderPac | IoPac | SimStat | GyroPac | OtherPacket
+    SyncEcho | SyncReply | Sip | ConfigPac | EncoderPac | IoPac | SimStat | GyroPac | SimLaser | OtherPacket
 )
 
 
@@ -205,4 +251,6 @@ _READERS: Final[dict[int, Any]] = {
     TYPE["IOPAC"]: IoPac.decode,
     TYPE["SIMSTAT"]: SimStat.decode,
     TYPE["GYROPAC"]: GyroPac.decode,
+    TYPE["SIMLASER"]: SimLaser.decode,
+    TYPE["SIMLASER2"]: SimLaser.decode,
 }

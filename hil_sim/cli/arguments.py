@@ -43,6 +43,7 @@ examples:
   argus-sim --monitor --world lab             robot, argusd and a live page, in one command
   argus-sim --robots 3 --tcp 8101             three robots, on ports 8101 to 8103
   argus-sim --tcp 8101 --quirks mobilesim     with the answers of the vendor's emulator
+  argus-sim --tcp 8101 --quirks mobilesim --laser     ... and its laser, for ARIA's programs (docs/emulator.md)
   argus-sim bench diagnosis --help            how well faults are diagnosed, over many missions without a link
   argus-sim bench journey --help              whether the robot gets there, and what the diagnosis costs
   argus-sim experiment --help                 the experiments of the paper, and the study that it lacks
@@ -264,6 +265,9 @@ def parser() -> argparse.ArgumentParser:
         default=[],
         metavar="NAME=VALUE",
         help="a parameter of the sonar model, as in a scenario (docs/worlds.md); repeatable",
+    )
+    place.add_argument(
+        "--laser", action="store_true", help="a laser that clients may ask for, as the vendor's emulator has"
     )
     place.add_argument("--aux-loopback", action="store_true", help="a loop-back plug on each AUX port")
     faults = result.add_argument_group("faults")

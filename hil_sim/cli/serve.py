@@ -24,7 +24,7 @@ from hil_sim.links.orders import Orders
 from hil_sim.record.recording import Recorder
 from hil_sim.record.truth import Log, TruthRecord
 from hil_sim.robot.robot import Robot
-from hil_sim.scenario.build import build_robot
+from hil_sim.scenario.build import build_robot, scanner_of
 from hil_sim.scenario.scenario import SEED_MAX, Scenario
 from hil_sim.server.quirks import server_kind
 from hil_sim.server.server import ArcosServer
@@ -93,6 +93,7 @@ def _loop(
         sip_cycle_ms=arguments.sip_cycle,
         aux_loopback=arguments.aux_loopback,
         log=log,
+        scanner=scanner_of(scenario, world, robot) if arguments.laser else None,
     )
     faults = LinkFaults(scenario.link_faults, scenario.seed, log) if scenario.link_faults else None
     stack.callback(link.close)

@@ -11,6 +11,8 @@ import numpy as np
 from hil_sim.errors import SimError
 from hil_sim.faults.execute import FaultSet
 from hil_sim.faults.kinds import Fault
+from hil_sim.laser.scan import Laser
+from hil_sim.laser.scanner import Scanner
 from hil_sim.record.truth import Log
 from hil_sim.robot.robot import Robot
 from hil_sim.scenario.scenario import Scenario
@@ -22,12 +24,14 @@ from hil_sim.tables.robot import RobotTable, robot_table
 from hil_sim.world.body import BodyModel
 from hil_sim.world.model import Pose, World
 from hil_sim.world.movers import Mover
-from hil_sim.world.moving import moving_solids
+from hil_sim.world.moving import MovingSolids, moving_solids
 from hil_sim.world.physics import Physics
 
 R = TypeVar("R", bound=Robot)
 OUTSIDE_MM = 1000.0
 """Farther from all solids and the start of a world is outside of it."""
+FAR_MM = 32_000.0
+"""The greatest range of the vendor's simulated laser."""
 
 
 def assemble(
@@ -119,3 +123,10 @@ def build_robot(
         log=log,
         faults_to_come=faults_to_come,
     )
+
+
+def scanner_of(scenario: Scenario, world: World, robot: Robot) -> Scanner:
+    """Return the laser of a robot, which sees what it meets."""
+    moving = robot.moving
+    assert moving is None or isinstance(moving, MovingSolids)
+    return Scanner(Laser(most_mm=FAR_MM), world, moving, np.random.default_rng([scenario.seed, 4]))

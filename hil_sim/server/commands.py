@@ -37,6 +37,10 @@ IGNORED: Final[dict[str, str]] = {
     "DIGTEMPTEST": "no temperature sensor",
     "ANALOGTEMPTEST": "no temperature sensor",
     "SIM_MODEL_CONFIG": "the model is chosen at the start",
+    "SIM_LRF_ENABLE": "no laser",
+    "SIM_LRF_SET_FOV_START": "no laser",
+    "SIM_LRF_SET_FOV_END": "no laser",
+    "SIM_LRF_SET_RES": "no laser",
     "SIM_CTRL": "the world is chosen at the start",
     "SIM_MESSAGE": "nobody to show it to",
     "SIM_EXIT": "a client does not end the emulator",
@@ -50,7 +54,6 @@ IGNORED_RANGES: Final[dict[str, str]] = {
     "POWER2": "no switched power",
     "LX": "a command of newer bases",
     "LX2": "a command of newer bases",
-    "SIM_LRF": "no laser",
 }
 """The same for ranges of numbers, NAME_FIRST to NAME_LAST in the table."""
 

@@ -57,6 +57,9 @@ class MobileSimServer(ArcosServer):
     connection.
     """
 
+    LASER_NAMES = (*ArcosServer.LASER_NAMES, ("ADSEL", "GRIPPERVAL", "GRIPREQUEST", "GYROCALCW"))
+    """Its forerunner's numbers, too: those are of other commands of a robot. ARIA sends only these."""
+
     def __init__(self, robot: Robot, **options: Any) -> None:
         super().__init__(robot, **options)
         robot.watchdog_stops = False

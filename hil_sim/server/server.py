@@ -4,11 +4,12 @@
 from __future__ import annotations
 
 import enum
+import functools
 import logging
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import Any, Final
+from typing import Any, ClassVar, Final
 
 from hil_sim.arcos import (
     BAUD_OF_CODE,
@@ -24,10 +25,12 @@ from hil_sim.arcos import (
     Unframer,
     frame,
 )
+from hil_sim.laser.scanner import Scanner
 from hil_sim.record.truth import Log
 from hil_sim.robot.report import config_pac, encoder_pac, io_pac, sim_stat, sip
 from hil_sim.robot.robot import Robot
 from hil_sim.server.commands import WHY_IGNORED, describe
+from hil_sim.server.laser import LaserPort
 from hil_sim.world.step import STEP_MS
 
 _SYNC0, _SYNC1, _SYNC2 = COMMAND["PULSE"], COMMAND["OPEN"], COMMAND["CLOSE"]
@@ -76,6 +79,10 @@ class State(enum.Enum):
     CONNECTED = "connected"
 
 
+def _with_value(act: Callable[[int], None], command: Command) -> None:
+    act(command.value)
+
+
 class ArcosServer:
     """Speaks ARCOS for a `Robot`: `receive` bytes, `advance` time, collect `outgoing` packets.
 
@@ -93,11 +100,13 @@ class ArcosServer:
         sip_cycle_ms: int = SIP_CYCLE_MS,
         aux_loopback: bool = False,
         log: Log | None = None,
+        scanner: Scanner | None = None,
     ) -> None:
         """`name`, `subclass`: None is as the robot's table says.
 
         `flash_baud`: the rate at which the robot starts and to which it returns. `sip_cycle_ms`: a multiple
-        of 10. `aux_loopback`: a plug on each AUX port sends back what goes out.
+        of 10. `aux_loopback`: a plug on each AUX port sends back what goes out. `scanner`: a laser that clients may
+        ask for.
         """
         self.robot = robot
         table = robot.table
@@ -122,7 +131,8 @@ class ArcosServer:
             2: AuxPort(TYPE["SERAUX2PAC"], aux_loopback),
             3: AuxPort(TYPE["SERAUX3PAC"], aux_loopback),
         }
-        self._handlers = self._table()
+        self._laser = LaserPort(scanner) if scanner is not None else None
+        self._handlers = self._table() | self._laser_table()
 
     # ---- the link's side
 
@@ -138,7 +148,8 @@ class ArcosServer:
     @property
     def is_plain(self) -> bool:
         """Nothing waits, nobody asked for more than SIPs, and nobody reads along."""
-        asked = self._encoders or self._io or self._sim_stat or self._joystick
+        laser = self._laser is not None and self._laser.form != 0
+        asked = self._encoders or self._io or self._sim_stat or self._joystick or laser
         rests = self.state is not State.CONNECTED or asked
         return not (rests or self._out or self.unframer.pending or _LOG.isEnabledFor(logging.DEBUG))
 
@@ -231,6 +242,8 @@ class ArcosServer:
         for port in self._aux.values():
             port.held.clear()
             port.wanted = 0
+        if self._laser is not None:
+            self._laser.reset()
         self.robot.close()
         if was_open:
             self._log("session", state="closed", reason=reason)
@@ -255,6 +268,9 @@ class ArcosServer:
             self._send(encoder_pac(self.robot).data)
         if self._sim_stat:
             self._send(sim_stat(self.robot).data)
+        if self._laser is not None:
+            for part in self._laser.packets(self.robot):
+                self._send(part.data)
 
     def _sip(self) -> Sip:
         return sip(self.robot)
@@ -319,6 +335,23 @@ class ArcosServer:
         table.update(dict.fromkeys(_CONFIG_FIELD, self._parameter))
         table.update(dict.fromkeys(_AUX_BAUD_FIELD, self._aux_baud))
         return table
+
+    LASER_NAMES: ClassVar[tuple[tuple[str, ...], ...]] = (
+        ("SIM_LRF_ENABLE", "SIM_LRF_SET_FOV_START", "SIM_LRF_SET_FOV_END", "SIM_LRF_SET_RES"),
+    )
+    """The commands to a laser: on or off, where its scan begins and ends, how far apart the beams are."""
+
+    def _laser_table(self) -> dict[int, Callable[[Command], None]]:
+        """The same for the commands to the laser; empty without one."""
+        laser = self._laser
+        if laser is None:
+            return {}
+        acts = (laser.enable, laser.set_start, laser.set_end, laser.set_step)
+        return {
+            COMMAND[name]: functools.partial(_with_value, act)
+            for names in self.LASER_NAMES
+            for name, act in zip(names, acts, strict=True)
+        }
 
     def _config(self, _command: Command) -> None:
         codes = {baud: code for code, baud in BAUD_OF_CODE.items()}

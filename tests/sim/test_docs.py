@@ -47,7 +47,7 @@ def robot(tmp_path: Path) -> Iterator[str]:
 
 
 def test_the_pages_have_their_commands() -> None:
-    assert len(COMMANDS) == 7
+    assert len(COMMANDS) == 8
     assert sum(bool(LONG.search(command)) for command in COMMANDS) == 4
 
 

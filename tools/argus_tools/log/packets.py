@@ -39,6 +39,7 @@ COMMAND_NAMES: Final = tuple(
 _NAMED_TYPES: Final = {
     **{TYPE[name]: name for name in SYNC_NAMES},
     **{TYPE[name]: name for name in ("CONFIGPAC", "ENCODERPAC", "IOPAC", "GYROPAC", "PLAYLIST", "SIMSTAT")},
+    **{TYPE[name]: name for name in ("SIMLASER", "SIMLASER2")},
     **{TYPE[name]: "SERAUXPAC" for name in ("SERAUXPAC", "SERAUX2PAC", "SERAUX3PAC")},
     **dict.fromkeys(SIP_TYPES, "SIP"),
 }
