@@ -17,7 +17,7 @@ from hil_sim.bench.worlds import make_world
 from hil_sim.core.library import Core, kind_name
 from hil_sim.laser.drive import Step, roam
 from hil_sim.laser.faults import FAULTS
-from hil_sim.laser.scan import Laser, nearest_in_sectors, scan
+from hil_sim.laser.scan import Laser, laser_of, nearest_in_sectors, scan
 from hil_sim.sonar.echo import EchoModel
 from hil_sim.sonar.params import SonarParams
 from hil_sim.tables.robot import RobotTable, robot_table
@@ -80,7 +80,7 @@ def drive(
     places = room.places(_CLEAR_MM)
     place = places[rng.integers(len(places))]
     start = Pose(float(place[0]), float(place[1]), float(rng.uniform(-180, 180)))
-    laser = _laser_of(table)
+    laser = laser_of(table)
     core = Core(0, {"active": 0}, table.ring)
     core.link_up(0)
     outcome, scans = Outcome(dead=dead), list[Floats]()
@@ -96,12 +96,6 @@ def drive(
         _note(outcome, core)
         outcome.way_mm += abs(step.speed_mm_s) * 0.1 if begun or not (fault or dead) else 0.0
     return outcome
-
-
-def _laser_of(table: RobotTable) -> Laser:
-    if table.sectors and table.sector_deg * len(table.sectors) == 360:
-        return Laser(x_mm=0.0, field_deg=360.0, beams=361)
-    return Laser()
 
 
 def _sectors_of(table: RobotTable, laser: Laser, reported: Floats | None) -> list[tuple[int, int, int]]:

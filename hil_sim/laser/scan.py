@@ -27,12 +27,20 @@ class Laser:
     field_deg: float = 180.0
     beams: int = 181
     most_mm: float = 8000.0
+    noise_mm: float = NOISE_MM
 
     @property
     def angles(self) -> Floats:
         """The bearings of its beams on the robot, rad, from right to left."""
         half = self.field_deg / 2
         return np.radians(self.facing_deg + np.linspace(-half, half, self.beams))
+
+
+def laser_of(table: RobotTable) -> Laser:
+    """Return the laser of a robot whose ring has one, with a beam for each degree."""
+    first, field = table.mounts[table.sectors[0]], table.sector_deg * len(table.sectors)
+    facing = first.heading_deg - (field - table.sector_deg) / 2
+    return Laser(first.x_mm, first.y_mm, facing, field, field + 1)
 
 
 def cast(world: World, x_mm: float, y_mm: float, bearings: Floats) -> Floats:
@@ -56,7 +64,7 @@ def scan(laser: Laser, world: World, pose: Pose, rng: np.random.Generator) -> Fl
     y_mm = pose.y_mm + laser.x_mm * math.sin(heading) + laser.y_mm * math.cos(heading)
     ranges = cast(world, x_mm, y_mm, laser.angles + heading)
     ranges = np.where(ranges < laser.most_mm, ranges, np.inf)
-    return ranges + rng.normal(0.0, NOISE_MM, len(ranges))
+    return ranges + rng.normal(0.0, laser.noise_mm, len(ranges))
 
 
 def nearest_in_sectors(

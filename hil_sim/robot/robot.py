@@ -16,6 +16,7 @@ from hil_sim.robot.chassis import Chassis, OdometryError, wrapped
 from hil_sim.robot.drive import Drive, Step, flash_settings
 from hil_sim.robot.energy import Energy
 from hil_sim.robot.interfaces import Body, Faults, Moving, Ring, SonarReading
+from hil_sim.robot.sectors import Sectors
 from hil_sim.robot.stall import StallMonitor
 from hil_sim.robot.state import RobotState
 from hil_sim.robot.ticks import Parts, Ticks, ticks_of
@@ -53,10 +54,13 @@ class Robot(RobotState):
         dynamic: bool = False,
         moving: Moving | None = None,
         log: Log | None = None,
+        sectors: Sectors | None = None,
     ) -> None:
         """`table`: which robot it is; None is the one that is emulated by default. Bumpers: None is as the table says.
 
         `dynamic`: solids may move by themselves, so contact is looked for at rest too; `moving` are such.
+
+        `sectors`: a laser among its sensors.
         """
         self.table = table = table if table is not None else robot_table()
         self.body = body
@@ -67,6 +71,7 @@ class Robot(RobotState):
         self.rear_segments = table.body.rear_bumpers if rear_bumpers is None else rear_bumpers
         self.dynamic = dynamic or moving is not None
         self.moving = moving
+        self._sectors = sectors
         self._closing_mm = moving.fastest_mm_s * STEP_S if moving is not None else 0.0
         self.log = log
         self.chassis = Chassis(
@@ -338,8 +343,8 @@ class Robot(RobotState):
 
     @property
     def ticks(self) -> Ticks | None:
-        """The same, for a loop in C around sub-steps; it has the readings so far."""
-        ticks = self._in_c()
+        """The same, for a loop in C around sub-steps and SIPs; it has the readings so far. Not of a laser."""
+        ticks = self._in_c() if self._sectors is None else None
         if ticks is not None:
             # Those of Python may be older than those that C has: all go back in their order.
             self._gather()
@@ -366,7 +371,9 @@ class Robot(RobotState):
                 self.log("sonar", {"t_s": round(reading.t_ms / 1000, 4), **fields, "fault": reading.fault})
 
     def take_readings(self) -> list[SonarReading]:
-        """Return the readings completed since the last call."""
+        """Return the readings completed since the last call, and those of a laser now."""
+        if self._sectors is not None:
+            self._hear(self._sectors.readings(self.now_ms, self.pose, self.ring.enabled))
         self._gather()
         readings, self._readings = self._readings, []
         return readings

@@ -11,10 +11,11 @@ import numpy as np
 from hil_sim.errors import SimError
 from hil_sim.faults.execute import FaultSet
 from hil_sim.faults.kinds import Fault
-from hil_sim.laser.scan import Laser
+from hil_sim.laser.scan import Laser, laser_of
 from hil_sim.laser.scanner import Scanner
 from hil_sim.record.truth import Log
 from hil_sim.robot.robot import Robot
+from hil_sim.robot.sectors import Sectors
 from hil_sim.scenario.scenario import Scenario
 from hil_sim.sonar.echo import EchoModel
 from hil_sim.sonar.params import SonarParams
@@ -30,8 +31,8 @@ from hil_sim.world.physics import Physics
 R = TypeVar("R", bound=Robot)
 OUTSIDE_MM = 1000.0
 """Farther from all solids and the start of a world is outside of it."""
-FAR_MM = 32_000.0
-"""The greatest range of the vendor's simulated laser."""
+VENDORS_LASER = Laser(most_mm=32_767.0, noise_mm=2.9)
+"""As the vendor's emulator has it: its noise is even, up to 5 mm."""
 
 
 def assemble(
@@ -73,17 +74,21 @@ def assemble(
     physics = world.physics if physics is None else physics
     rough = None
     if physics.on_sonars:
-        rough = Roughness(physics, table.sonars, np.random.default_rng([seed, 3]))
+        rough = Roughness(physics, table.without_laser.sonars, np.random.default_rng([seed, 3]))
     ring = SonarRing(
         world,
         sonar,
         injected,
         np.random.default_rng([seed, 2]),
-        robot=table,
+        robot=table.without_laser,
         echoes=echoes,
         moving=moving,
         rough=rough,
     )
+    sectors = None
+    if table.sectors:
+        scanner = Scanner(laser_of(table), world, moving, np.random.default_rng([seed, 4]))
+        sectors = Sectors(table, scanner, injected)
     return make(
         body,
         ring,
@@ -96,6 +101,7 @@ def assemble(
         seed=seed,
         moving=moving,
         log=log,
+        sectors=sectors,
     )
 
 
@@ -129,4 +135,4 @@ def scanner_of(scenario: Scenario, world: World, robot: Robot) -> Scanner:
     """Return the laser of a robot, which sees what it meets."""
     moving = robot.moving
     assert moving is None or isinstance(moving, MovingSolids)
-    return Scanner(Laser(most_mm=FAR_MM), world, moving, np.random.default_rng([scenario.seed, 4]))
+    return Scanner(VENDORS_LASER, world, moving, np.random.default_rng([scenario.seed, 5]))

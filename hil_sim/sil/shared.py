@@ -38,7 +38,7 @@ def shared_world(name: str, stamp: Stamp) -> World:  # noqa: ARG001 (a key)
 @lru_cache(maxsize=8)
 def shared_echoes(name: str, stamp: Stamp, params: SonarParams, robot: str) -> EchoModel:
     """Return the echo model of a world, made once."""
-    return EchoModel(shared_world(name, stamp), params, robot_table(robot))
+    return EchoModel(shared_world(name, stamp), params, robot_table(robot).without_laser)
 
 
 def sonar_params(values: Mapping[str, float]) -> SonarParams:

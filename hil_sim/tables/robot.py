@@ -92,6 +92,16 @@ class RobotTable:
         return len(self.mounts)
 
     @property
+    def without_laser(self) -> RobotTable:
+        """The same without the sectors, which make arrays of their own."""
+        if not self.sectors:
+            return self
+        mounts = self.mounts[: self.sonars - len(self.sectors)]
+        arrays = len({mount.array for mount in mounts})
+        orders, places = self.orders[:arrays], self.places[:arrays]
+        return replace(self, mounts=mounts, orders=orders, places=places, sectors=(), sector_deg=0)
+
+    @property
     def refresh_ms(self) -> int:
         """Time between two firings of one sonar by default."""
         return self.cycle_ms * max(len(order) for order in self.orders)

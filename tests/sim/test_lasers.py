@@ -7,10 +7,16 @@ import math
 
 import numpy as np
 import pytest
+from doubles import Session, cmd, sips
 
 from hil_sim.bench.lasers import RINGS, drive, found_ms
+from hil_sim.faults.grammar import parse_fault
 from hil_sim.laser.faults import FAULTS
-from hil_sim.laser.scan import Laser, cast, nearest_in_sectors
+from hil_sim.laser.scan import Laser, cast, laser_of, nearest_in_sectors, scan
+from hil_sim.scenario.build import build_robot
+from hil_sim.scenario.scenario import Scenario
+from hil_sim.server.server import ArcosServer
+from hil_sim.sil import Mission, run
 from hil_sim.tables.robot import robot_table
 from hil_sim.world.files import load_world
 
@@ -72,3 +78,50 @@ def test_a_laser_bears_witness_against_a_dead_sonar() -> None:
 def test_a_laser_names_no_healthy_sonar(world: str, seconds: float) -> None:
     # What is at the rim of a cone a laser returns and a sonar may miss.
     assert drive(str(RINGS / "sonars-laser.toml"), world, 2, seconds).named == {}, f"{world} 2"
+
+
+def emulated(ring: str, *faults: str) -> Session:
+    """A client of a robot whose ring has a laser, in an office."""
+    name = str(RINGS / f"{ring}.toml")
+    table = robot_table(name)
+    scenario = Scenario(
+        world="office", robot=name, faults=tuple(parse_fault(text, table) for text in faults), seed=46
+    )
+    world = load_world("office")
+    session = Session(ArcosServer(build_robot(scenario, world, world.start, None)))
+    session.connect()
+    return session
+
+
+@pytest.mark.parametrize(("ring", "first"), [("laser", 0), ("sonars-laser", 16)])
+def test_a_sip_has_the_sectors_of_the_scan_of_its_moment(ring: str, first: int) -> None:
+    session = emulated(ring)
+    world, table = load_world("office"), robot_table(str(RINGS / f"{ring}.toml"))
+    for sip in sips(session.run(500)):
+        sectors = {number: mm for number, mm in sip.sonars if number >= first}
+        assert list(sectors) == list(table.sectors)
+        true = nearest_in_sectors(
+            table, laser_of(table).angles, scan(laser_of(table), world, world.start, np.random.default_rng(1))
+        )
+        for number, mm in sectors.items():
+            assert mm == pytest.approx(min(true[number], 5000), abs=100), f"sector {number}, seed 46"
+
+
+def test_a_laser_whose_arrays_are_off_is_silent() -> None:
+    session = emulated("sonars-laser")
+    session.send(cmd("SONAR", 0))
+    assert all(not sip.sonars for sip in sips(session.run(500))[1:])
+
+
+def test_a_sector_has_the_faults_of_a_sonar() -> None:
+    session = emulated("sonars-laser", "off:20", "stuck:25:value=777")
+    last = dict(sips(session.run(500))[-1].sonars)
+    assert (last[20], last[25]) == (5000, 777)
+
+
+def test_a_mission_with_a_laser_gets_there_with_nothing_named() -> None:
+    world = load_world("office")
+    goal = (world.start.x_mm + 2500.0, world.start.y_mm)
+    outcome = run(Mission("office", (goal,), robot=str(RINGS / "sonars-laser.toml"), seed=46, baud=57_600))
+    assert outcome.reached, "seed 46"
+    assert not any(event.name in ("SONAR_NAMED", "LASER_FAULT") for event in outcome.events), "seed 46"
