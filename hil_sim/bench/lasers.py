@@ -17,7 +17,7 @@ from hil_sim.bench.worlds import make_world
 from hil_sim.core.library import Core, kind_name
 from hil_sim.laser.drive import Step, roam
 from hil_sim.laser.faults import FAULTS
-from hil_sim.laser.scan import Laser, laser_of, nearest_in_sectors, scan
+from hil_sim.laser.scan import Beams, laser_of, scan
 from hil_sim.sonar.echo import EchoModel
 from hil_sim.sonar.params import SonarParams
 from hil_sim.tables.robot import RobotTable, robot_table
@@ -81,6 +81,7 @@ def drive(
     place = places[rng.integers(len(places))]
     start = Pose(float(place[0]), float(place[1]), float(rng.uniform(-180, 180)))
     laser = laser_of(table)
+    beams = Beams(table, laser.angles)
     core = Core(0, {"active": 0}, table.ring)
     core.link_up(0)
     outcome, scans = Outcome(dead=dead), list[Floats]()
@@ -89,7 +90,7 @@ def drive(
         scans.append(scan(laser, world, step.true, rng))
         begun = step.t_ms >= _BEGINS_MS
         ranges = sonars.heard(step.true, dead if begun else ())
-        ranges += _sectors_of(table, laser, _reported(scans, step.t_ms, fault))
+        ranges += _sectors_of(beams, _reported(scans, step.t_ms, fault))
         core.observe(step.t_ms, _motion(step), ranges)
         core.process(step.t_ms)
         core.transmit()
@@ -98,13 +99,13 @@ def drive(
     return outcome
 
 
-def _sectors_of(table: RobotTable, laser: Laser, reported: Floats | None) -> list[tuple[int, int, int]]:
+def _sectors_of(beams: Beams, reported: Floats | None) -> list[tuple[int, int, int]]:
     """The nearest of each sector as the core takes it; none where the laser sends no scan."""
     if reported is None:
         return []
     return [
         (number, 5000 if mm >= 5000 else max(1, round(mm)), 0)
-        for number, mm in nearest_in_sectors(table, laser.angles, reported).items()
+        for number, mm in beams.nearest(reported).items()
     ]
 
 

@@ -67,18 +67,21 @@ def scan(laser: Laser, world: World, pose: Pose, rng: np.random.Generator) -> Fl
     return ranges + rng.normal(0.0, laser.noise_mm, len(ranges))
 
 
-def nearest_in_sectors(
-    table: RobotTable, angles: npt.NDArray[np.float64], ranges_mm: npt.NDArray[np.float64]
-) -> dict[int, float]:
-    """Return the nearest return in each sector of a robot's laser, mm; inf: none. What no beam looks into is left out.
+class Beams:
+    """Which beams of a scan look into which sector of a robot's laser; angles: of the beams on the robot, rad."""
 
-    angles: of the beams on the robot, rad. A range that is no return is inf.
-    """
-    found: dict[int, float] = {}
-    half = math.radians(table.sector_deg) / 2
-    for number in table.sectors:
-        off = angles - math.radians(table.mounts[number].heading_deg)
-        within = np.abs(np.arctan2(np.sin(off), np.cos(off))) <= half
-        if within.any():
-            found[number] = float(ranges_mm[within].min())
-    return found
+    def __init__(self, table: RobotTable, angles: Floats) -> None:
+        self._of: list[tuple[int, npt.NDArray[np.intp]]] = []
+        half = math.radians(table.sector_deg) / 2
+        for number in table.sectors:
+            off = angles - math.radians(table.mounts[number].heading_deg)
+            within = np.flatnonzero(np.abs(np.arctan2(np.sin(off), np.cos(off))) <= half)
+            if within.size:
+                self._of.append((number, within))
+
+    def nearest(self, ranges_mm: Floats) -> dict[int, float]:
+        """Return the nearest return in each sector, mm; inf: none. What no beam looks into is left out.
+
+        A range that is no return is inf.
+        """
+        return {number: float(ranges_mm[within].min()) for number, within in self._of}

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from hil_sim.faults.execute import FaultSet
-from hil_sim.laser.scan import nearest_in_sectors
+from hil_sim.laser.scan import Beams
 from hil_sim.laser.scanner import Scanner
 from hil_sim.sonar.params import Reading
 from hil_sim.tables.robot import RobotTable
@@ -22,6 +22,7 @@ class Sectors:
 
     def __init__(self, table: RobotTable, scanner: Scanner, faults: FaultSet | None) -> None:
         self._table, self._scanner, self._faults = table, scanner, faults
+        self._beams = Beams(table, scanner.laser.angles)
 
     def readings(self, now_ms: float, pose: Pose, enabled: Sequence[bool]) -> list[Reading]:
         """Return those of the arrays that are on."""
@@ -29,7 +30,7 @@ class Sectors:
             return []
         scan = self._scanner.scan(pose)
         found = []
-        for number, mm in self._nearest(scan, 0.0).items():
+        for number, mm in self._nearest(self._beams, scan).items():
             if enabled[self._table.mounts[number].array]:
                 found += self._reported(number, mm, now_ms, scan)
         return found
@@ -39,14 +40,13 @@ class Sectors:
             return [Reading(now_ms, number, true_mm, true_mm, None)]
 
         def remeasure(angle_deg: float) -> int:
-            return self._nearest(scan, angle_deg).get(number, self._table.no_echo_mm)
+            turned = Beams(self._table, self._scanner.laser.angles - math.radians(angle_deg))
+            return self._nearest(turned, scan).get(number, self._table.no_echo_mm)
 
         value, kind = self._faults.apply(number, now_ms, true_mm, remeasure)
         return [] if value is None else [Reading(now_ms, number, value, true_mm, kind)]
 
-    def _nearest(self, scan: Floats, angle_deg: float) -> dict[int, int]:
-        """Return the nearest return in each sector, mm, were it turned by an angle."""
-        angles = self._scanner.laser.angles - math.radians(angle_deg)
+    def _nearest(self, beams: Beams, scan: Floats) -> dict[int, int]:
+        """Return the nearest return in each sector, mm."""
         far = self._table.no_echo_mm
-        found = nearest_in_sectors(self._table, angles, scan)
-        return {k: far if mm >= far else max(_LEAST_MM, round(mm)) for k, mm in found.items()}
+        return {k: far if mm >= far else max(_LEAST_MM, round(mm)) for k, mm in beams.nearest(scan).items()}

@@ -12,7 +12,7 @@ from doubles import Session, cmd, sips
 from hil_sim.bench.lasers import RINGS, drive, found_ms
 from hil_sim.faults.grammar import parse_fault
 from hil_sim.laser.faults import FAULTS
-from hil_sim.laser.scan import Laser, cast, laser_of, nearest_in_sectors, scan
+from hil_sim.laser.scan import Beams, Laser, cast, laser_of, scan
 from hil_sim.scenario.build import build_robot
 from hil_sim.scenario.scenario import Scenario
 from hil_sim.server.server import ArcosServer
@@ -41,7 +41,7 @@ def test_a_sector_takes_its_nearest_beam() -> None:
     table = robot_table(ALONE)
     ranges = np.full(181, np.inf)
     ranges[90 + 14] = 1234.0
-    found = nearest_in_sectors(table, Laser().angles, ranges)
+    found = Beams(table, Laser().angles).nearest(ranges)
     assert {k: mm for k, mm in found.items() if np.isfinite(mm)} == {6: 1234.0}
     assert table.mounts[6].heading_deg == 12
 
@@ -100,9 +100,8 @@ def test_a_sip_has_the_sectors_of_the_scan_of_its_moment(ring: str, first: int) 
     for sip in sips(session.run(500)):
         sectors = {number: mm for number, mm in sip.sonars if number >= first}
         assert list(sectors) == list(table.sectors)
-        true = nearest_in_sectors(
-            table, laser_of(table).angles, scan(laser_of(table), world, world.start, np.random.default_rng(1))
-        )
+        laser = laser_of(table)
+        true = Beams(table, laser.angles).nearest(scan(laser, world, world.start, np.random.default_rng(1)))
         for number, mm in sectors.items():
             assert mm == pytest.approx(min(true[number], 5000), abs=100), f"sector {number}, seed 46"
 

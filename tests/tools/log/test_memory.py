@@ -11,9 +11,12 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
+import bags
 import pytest
 from forms import ROBOT, frames, hexdump_c
 from logs import CAPTURES, ROOT
+from rosbags.rosbag1 import Writer
+from rosbags.typesys import Stores, get_typestore
 
 pytestmark = pytest.mark.soak
 
@@ -122,4 +125,25 @@ def test_a_log_of_nothing_but_damage_takes_no_more(
     for size in (1 << 20, 4 << 20):
         path.write_bytes(good + block * (size // len(block)))
         peaks.append(peak_kb("decode", "--json", path))
+    assert peaks[1] - peaks[0] < GROWTH_KB, peaks
+
+
+def long_bag(path: Path, rounds: int) -> Path:
+    """Write the same pose and the same ranges over and over, at rest."""
+    store = get_typestore(Stores.ROS1_NOETIC)
+    types = store.types
+    header = types["std_msgs/msg/Header"](0, types["builtin_interfaces/msg/Time"](1_700_000_000, 0), "odom")
+    point, points = types["geometry_msgs/msg/Point32"], list(bags.points([1000.0] * 16))
+    cloud = types["sensor_msgs/msg/PointCloud"](header, [point(x, y, 0.0) for x, y in points], [])
+    raw = store.serialize_ros1(cloud, "sensor_msgs/msg/PointCloud")
+    with Writer(path) as bag:
+        topic = bag.add_connection("/sonar", "sensor_msgs/msg/PointCloud", typestore=store)
+        for n in range(rounds):
+            bag.write(topic, 1_700_000_000_000_000_000 + n * 100_000_000, raw)
+    return path
+
+
+def test_a_longer_bag_takes_little_more(tmp_path: Path) -> None:
+    # Of each message the place in the bag is kept, as ROS 1 has no order by time.
+    peaks = [peak_kb("decode", long_bag(tmp_path / f"{n}.bag", n)) for n in (10_000, 100_000)]
     assert peaks[1] - peaks[0] < GROWTH_KB, peaks

@@ -15,7 +15,7 @@ from types import SimpleNamespace
 from typing import Any, Final, NamedTuple, Protocol
 
 from argus_tools.chunks import LogError
-from argus_tools.rings.written import falls, mcap_times, of_bag1, of_bag2
+from argus_tools.rings.written import falls, mcap_times, of_bag1, of_bag2, reader_of_bag1
 from argus_tools.ros2_messages import SIP, read_sip
 
 _NANO: Final = 1_000_000_000
@@ -61,20 +61,19 @@ class Bag:
     """A ROS 1 or ROS 2 bag. Each connection has the message definition that the bag has for it."""
 
     def __init__(self, path: Path, is_first: bool, name: str) -> None:
-        from rosbags.rosbag1 import Reader as Reader1
-        from rosbags.rosbag2 import Reader as Reader2
-
         self._is_first = is_first
         self._stores: dict[tuple[str, str], Any] = {}
         try:
-            self._reader: Any = Reader1(path) if is_first else Reader2(path)
+            self._reader = reader_of_bag1(path) if is_first else _reader_of_bag2(path)
             self._reader.open()
         except Exception as error:
             raise LogError(f"{name}: a bag that cannot be read: {_what(error)}") from error
         counts: dict[tuple[str, str], int] = {}
         for connection in self._reader.connections:
             key = (connection.topic, connection.msgtype)
-            counts[key] = counts.get(key, 0) + connection.msgcount
+            counts[key] = counts.get(key, 0) + (
+                self._reader.counted(connection.id) if is_first else connection.msgcount
+            )
         self.topics = [Topic(topic, kind, count) for (topic, kind), count in counts.items()]
 
     def messages(self, topics: Iterable[str]) -> Iterator[Message]:
@@ -164,6 +163,12 @@ class OwnMcap:
     def close(self) -> None:
         """Close the file."""
         self._file.close()
+
+
+def _reader_of_bag2(path: Path) -> Any:
+    from rosbags.rosbag2 import Reader
+
+    return Reader(path)
 
 
 def _what(error: BaseException) -> str:

@@ -14,7 +14,7 @@ from argus_tools.chunks import LogError
 from argus_tools.rings.geometry import Frames, Pose, frame_name, range_of, whose_frames, whose_points
 from argus_tools.rings.intake import Odd, limits_of
 from argus_tools.rings.recording import SONAR_ARRAY, Message
-from hil_sim.laser.scan import nearest_in_sectors
+from hil_sim.laser.scan import Beams
 from hil_sim.tables.robot import RobotTable
 
 RANGE: Final = "sensor_msgs/msg/Range"
@@ -315,6 +315,7 @@ class Sectors:
         pose = frames.on_robot(seen[0].body.header.frame_id)
         self._is_placed = pose is not None
         self._yaw = pose.yaw_rad if pose else 0.0
+        self._form: tuple[float, float, int] | None = None
         if not self.take(seen[0]):
             raise LogError(
                 f"the scan looks into no sector of {table.subclass}: [laser] facing_deg, field_deg"
@@ -337,9 +338,14 @@ class Sectors:
         ranges = np.asarray(body.ranges, dtype=np.float64)
         if not (math.isfinite(body.angle_min) and math.isfinite(body.angle_increment)):
             raise Odd("angles of the scan are not finite")
-        angles = self._yaw + body.angle_min + body.angle_increment * np.arange(len(ranges))
+        form = (float(body.angle_min), float(body.angle_increment), len(ranges))
+        if form != self._form:
+            self._form = form
+            self._beams = Beams(
+                self.table, self._yaw + form[0] + form[1] * np.arange(form[2], dtype=np.float64)
+            )
         is_return = (ranges >= body.range_min) & (ranges < body.range_max) & (ranges > 0)
-        return nearest_in_sectors(self.table, angles, np.where(is_return, ranges, np.inf))
+        return self._beams.nearest(np.where(is_return, ranges, np.inf))
 
 
 class Both:
