@@ -7,10 +7,10 @@ import argus
 
 
 def main(path: str) -> int:
-    """Print what is found; return 1 when a sonar is not healthy."""
+    """Print what is found; return 1 when a sonar is faulty."""
     found = argus.diagnose(path)
     print(found.text)
-    bad = [k for k, health in enumerate(found.health) if health not in ("HEALTHY", "ABSENT")]
+    bad = [k for k, health in enumerate(found.health) if health not in ("HEALTHY", "UNKNOWN", "ABSENT")]
     for k in bad:
         print(f"sonar {k}: {found.health[k]} {found.kind[k]}")
     return 1 if bad else 0

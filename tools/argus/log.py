@@ -109,6 +109,6 @@ def diagnose(
         tuple(status["health"]),
         tuple(status["kind"]),
         status["failure"],
-        "\n".join(summary.lines(status, 0)),
+        "\n".join(summary.lines(status, 0, listener.unborne, listener.unheard)),
         status,
     )

@@ -11,6 +11,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
+import argus
 import pytest
 from argus_tools.chunks import Chunk, Direction, Offsets, copy
 from argus_tools.formats import ReadOptions, formats
@@ -246,6 +247,34 @@ def test_a_dead_sonar_is_a_line_with_its_time(tmp_path: Path, capsys: pytest.Cap
         "paper",
     )
     assert in_bin[0].startswith("sonar/front/03 disabled as off at byte ")
+
+
+@pytest.mark.parametrize("format_", ["record", "bin"])
+@pytest.mark.parametrize("echo_at", [None, 0, 40, 99])
+def test_one_that_heard_nothing_is_not_healthy_and_one_echo_ends_that(
+    echo_at: int | None, format_: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    packets = sips(100, dead=[0, 13])
+    if echo_at is not None:
+        packets[echo_at] = frame(Sip(flags=1, battery=125, sonars=((13, 4999), (0, DEAD_MM))).data)
+    path = write(tmp_path / "a", timed(packets), format_)
+    lines = told(path, capsys, "--format", format_)
+    silent = [0] if echo_at is not None else [0, 13]
+    assert [line for line in lines if line.endswith("contradicts it: not judged")] == lines[:-1]
+    assert [int(line.split()[0][-2:]) for line in lines[:-1]] == silent
+    assert lines[-1].startswith(f"{16 - len(silent)} of 16 sonars healthy")
+    health = faults(path, capsys, "--profile", "argus", "--format", format_)[-1]["health"]
+    assert [number for number, state in enumerate(health) if state == "UNKNOWN"] == silent
+    diagnosis = argus.diagnose(path, form=format_)
+    assert (list(diagnosis.health), diagnosis.text) == (health, "\n".join(lines))
+
+
+def test_where_nobody_hears_anything_no_sonar_is_judged(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    hall, summary = told(write(tmp_path / "a.rec", timed(sips(100, dead=range(16)))), capsys)
+    assert hall.startswith("16 sonars (0, 1, 2, ") and hall.endswith("not judged")
+    assert summary.startswith("too little to judge a sonar by in 100 SIPs")
 
 
 def test_sonars_that_fail_together_are_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -19,6 +19,7 @@ from argus_tools.log.summary import Summary
 from hil_sim.arcos import FLAG, SIP, TIMING, Command, SyncReply
 from hil_sim.core.library import Core, CoreEvent, kind_name, setting_value
 from hil_sim.faults.values import value_words
+from hil_sim.sonar.params import NO_ECHO_MM
 
 EXAMPLES: Final = """\
   argus-log faults capture.bin                 what is wrong, a line for each finding; one if it is nothing
@@ -27,6 +28,7 @@ EXAMPLES: Final = """\
   argus-log faults drive.rec --set suspect_readings=5 --set stale_ms=3000
 
 The manager only listens: it cannot turn the robot, so a suspect that only a turn could judge stays a suspect.
+One that gives only "no echo", where nothing that others hear contradicts it, may be dead or right: it is not judged.
 A log without times is taken as one SIP each 100 ms. The exit code is 1 where a sonar is disabled, or a suspect with a
 name for its fault (--exit-zero: 0). Of a damaged log no sonar is given out as silent.
 """
@@ -46,7 +48,7 @@ _FEW_ROWS: Final = 4
 _OF_SESSION: Final = frozenset(("SONAR", "CLOSE"))
 _ALL_ARRAYS: Final = (1 << TIMING["ARRAYS_MAX"]) - 1
 _ARRAY: Final = TIMING["TRANSDUCERS_PER_ARRAY"]
-_ABSENT, _UNKNOWN = "ABSENT", "UNKNOWN"
+_ABSENT, _UNKNOWN, _HEALTHY = "ABSENT", "UNKNOWN", "HEALTHY"
 _COUNTS: Final = ("sips", "bad_checksums", "skipped_bytes")
 _UNSEEN: Final = 0xFFFFFFFF
 EXIT_FAULTS: Final = 1
@@ -128,6 +130,8 @@ class Listener:
         self._heard = _ALL_ARRAYS
         self._lately: deque[bool] = deque(maxlen=_LOOKED_AT)
         self._unborne: set[int] = set()
+        self._reported: set[int] = set()
+        self._echoed: set[int] = set()
         self._last: Core | None = None
         self._before: Counter[str] = Counter()
         # Of the last SIP, and the lengths and numbers of readings of those that could be read.
@@ -197,6 +201,8 @@ class Listener:
             if said := self._placed(event, rows[number]):
                 yield number, said
         self._lately.extend([True] * (fed.taken - seen))
+        for row in rows[: fed.taken]:
+            self._note_echoes(row.data)
         self._clock_ms = clocks[fed.taken - 1]
         self._now_ms = begin_ms + (fed.now_ms - begin_ms & 0xFFFFFFFF)
         if not core.is_open:
@@ -220,6 +226,7 @@ class Listener:
         if is_read:
             self._flags = row.data[_FLAGS_AT : _FLAGS_AT + 2]
             self._shapes.add((len(row.data), row.data[_COUNT_AT]))
+            self._note_echoes(row.data)
         if row.ok and self._arrays.take(row, is_read):
             self._leave()
         if row.dir != ROBOT_TO_CLIENT:
@@ -265,7 +272,9 @@ class Listener:
         for number in range(len(status["health"])):
             if not self._is_heard(number):
                 status["health"][number], status["kind"][number] = _ABSENT, ""
-            elif number in self._unborne and status["health"][number] != "HEALTHY":
+            elif number in self.unheard and status["health"][number] == _HEALTHY:
+                status["health"][number] = _UNKNOWN
+            elif number in self._unborne and status["health"][number] != _HEALTHY:
                 status["health"][number], status["kind"][number] = _UNKNOWN, ""
             elif status["health"][number] == "STALE" and self._is_damaged():
                 self._unborne.add(number)
@@ -276,6 +285,19 @@ class Listener:
     def unborne(self) -> list[int]:
         """Sonars that gave no reading while the log was damaged, which may be why."""
         return sorted(self._unborne)
+
+    @property
+    def unheard(self) -> list[int]:
+        """Sonars that gave readings, and no echo among them: no echo is right where nothing is."""
+        return sorted(self._reported - self._echoed)
+
+    def _note_echoes(self, data: bytes) -> None:
+        for at in range(_COUNT_AT + 1, _COUNT_AT + 1 + 3 * data[_COUNT_AT], 3):
+            sonar = data[at]
+            if sonar not in self._echoed:
+                self._reported.add(sonar)
+                if data[at + 1] | data[at + 2] << 8 < NO_ECHO_MM:
+                    self._echoed.add(sonar)
 
     def _is_damaged(self) -> bool:
         return _DAMAGED_SHARE * (len(self._lately) - sum(self._lately)) >= max(1, len(self._lately))
@@ -399,7 +421,7 @@ def run(args: argparse.Namespace) -> int:
         raise LogError(f"{args.log}: holds no SIP from the robot, so there is nothing to judge")
     if is_short:
         unread = sum(entries.unread for entries in source.log.damage_lists)
-        print("\n".join(summary.lines(status, unread, listener.unborne)))
+        print("\n".join(summary.lines(status, unread, listener.unborne, listener.unheard)))
     else:
         print(json.dumps({"t": t, **_STATUS, **status}) if args.json else _table(status, colour))
     return EXIT_FAULTS if summary.has_faults(status) and not args.exit_zero else source.exit_code

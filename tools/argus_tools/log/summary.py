@@ -85,10 +85,12 @@ class Summary:
         elif name == _KNOWN_BETTER and event.sonar in self._disabled:
             self._disabled[event.sonar] = (kind_name(event.value), *self._disabled[event.sonar][1:])
 
-    def lines(self, status: dict[str, Any], unread: int, unborne: Sequence[int] = ()) -> list[str]:
+    def lines(
+        self, status: dict[str, Any], unread: int, unborne: Sequence[int] = (), unheard: Sequence[int] = ()
+    ) -> list[str]:
         """Return the lines, of what the manager knows at the end and how many places of the file were not read.
 
-        unborne: sonars that gave no reading while the log was damaged.
+        unborne: sonars that gave no reading while the log was damaged. unheard: those that gave only no echo.
         """
         health = status["health"]
         out = self._gone(health)
@@ -107,6 +109,7 @@ class Summary:
             for number in unborne
             if health[number] == "UNKNOWN"
         ]
+        out += _open([number for number in unheard if health[number] == "UNKNOWN"])
         is_judged = any(state in _JUDGED for state in health)
         head = (
             ""
@@ -189,6 +192,14 @@ class Summary:
         if unread:
             counts.append(f"{unread} place{'s' * (unread > 1)} of the file could not be read")
         return "; ".join(counts)
+
+
+def _open(unheard: Sequence[int]) -> list[str]:
+    """Tell of sonars that may be dead or right, several in one line."""
+    what = "gave only no echo, and nothing that others heard contradicts it: not judged"
+    if len(unheard) > _TOGETHER:
+        return [f"{len(unheard)} sonars ({', '.join(map(str, unheard))}) {what}"]
+    return [f"{_name(number):<14} {what}" for number in unheard]
 
 
 def _name(sonar: int) -> str:
