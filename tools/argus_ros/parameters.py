@@ -201,7 +201,7 @@ ARGUS: Final[Table] = {
 RANGE_GUARD: Final[Table] = {
     **_COMMON,
     "robot": Parameter(
-        "p3dx-sh", "whose sonars these are: a word of the setting robot (argusd --list-config)", check=_robot
+        "p3dx-sh", "whose sonars these are: a known robot's subclass, or the file of a ring", check=_robot
     ),
     "topics": Parameter(
         [f"sonar/range_{k}" for k in range(robot_table().sonars)],

@@ -273,7 +273,8 @@ def test_where_nobody_hears_anything_no_sonar_is_judged(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     hall, summary = told(write(tmp_path / "a.rec", timed(sips(100, dead=range(16)))), capsys)
-    assert hall.startswith("16 sonars (0, 1, 2, ") and hall.endswith("not judged")
+    assert hall.startswith("16 sonars (0, 1, 2, ")
+    assert hall.endswith("not judged")
     assert summary.startswith("too little to judge a sonar by in 100 SIPs")
 
 
