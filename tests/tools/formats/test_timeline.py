@@ -270,3 +270,41 @@ def test_an_asc_with_a_date_and_negative_times_is_absolute(tmp_path: Path) -> No
         "1.250000 0  648             Rx   d 7 06 FA FB 03 00 00 00\n"
     )
     assert [chunk.t for chunk in open_log(str(log))] == [1795750382.0, 1795750385.75]
+
+
+@pytest.mark.parametrize(
+    ("date", "t"),
+    [
+        ("Fri Nov 27 03:33:04.500 AM 2026", 1795750384.5),
+        ("Fre Nov 27 03:33:04.500 2026", 1795750384.5),
+        ("Die Okt 6 10:20:00 2026", 1791282000.0),
+        ("Mi M\xe4r 4 10:20:00 2026", 1772619600.0),
+        ("Mit Mrz 4 10:20:00 2026", 1772619600.0),
+        ("Don Mai 7 10:20:00.250 2026", 1778149200.25),
+        ("Sam Dez 5 10:20:00 2026", 1796466000.0),
+    ],
+)
+@pytest.mark.parametrize("encoding", ["latin-1", "utf-8"])
+def test_an_asc_has_its_date_in_english_or_german(date: str, t: float, encoding: str, tmp_path: Path) -> None:
+    log = tmp_path / "a.asc"
+    log.write_bytes(
+        f"date {date}\nbase hex  timestamps absolute\nno internal events logged\n"
+        "0.500000 0  648             Rx   d 7 06 FA FB 03 00 00 00\n".encode(encoding)
+    )
+    reader = open_log(str(log))
+    assert [chunk.t for chunk in reader] == [t + 0.5]
+    assert not reader.damage
+
+
+def test_an_asc_whose_date_is_not_understood_is_told(tmp_path: Path) -> None:
+    log = tmp_path / "a.asc"
+    log.write_text(
+        "date ven. d\u00e9c. 4 10:20:00 2026\nbase hex  timestamps absolute\nno internal events logged\n"
+        "0.500000 0  648             Rx   d 7 06 FA FB 03 00 00 00\n",
+        "utf-8",
+    )
+    reader = open_log(str(log))
+    assert [chunk.t for chunk in reader] == [0.5]
+    (entry,) = reader.damage
+    assert (entry.place, entry.what.partition("'")[0]) == ("line 1", "the date ")
+    assert entry.what.endswith("is not understood; times are since the log's start")

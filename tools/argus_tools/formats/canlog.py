@@ -39,7 +39,7 @@ _OBJECT_MAX: Final = 1 << 26
 _OBJECT_HEAD: Final = 16
 _FILLING: Final = 4
 _ASC_HEAD: Final = re.compile(
-    rb"\s*(date\s+\w{3}\s|base\s+(?:hex|dec)\b|begin\s+triggerblock\b)", re.IGNORECASE
+    rb"\s*(date\s+[^\W\d]{2,4}\.?\s|base\s+(?:hex|dec)\b|begin\s+triggerblock\b)", re.IGNORECASE
 )
 _ASC_LINE: Final = re.compile(
     rb"\s*-?\d+\.\d+\s+(?:\d+\s+[0-9A-Fa-f]+x?\s+(?:Rx|Tx)\s+[dr]\s|CANFD\s+\d+\s+(?:Rx|Tx)\s)", re.IGNORECASE
@@ -145,8 +145,9 @@ class _Lines:
     What stands before the first frame is read at once: of it python-can gets only what it understands.
     """
 
-    def __init__(self, stream: BufferedReader, kind: str, name: str) -> None:
+    def __init__(self, stream: BufferedReader, kind: str, name: str, damage: DamageList) -> None:
         self._stream = stream
+        self._damage = damage
         self._is_asc = kind == "asc"
         self._name = name
         self._header: list[str] = []
@@ -256,8 +257,12 @@ class _Lines:
         """
         self._is_relative |= bool(_ASC_RELATIVE.match(line))
         if match := _ASC_DATE.match(line):
-            stamp = Times().take(line[match.end() :].strip().encode("latin-1"))
+            date = line[match.end() :].strip()
+            stamp = Times().take(date.encode("latin-1"))
             self._start = stamp.t if stamp else 0.0
+            if stamp is None:
+                what = f"the date '{date[:40]}' is not understood; times are since the log's start"
+                self._damage.correct(Damage(f"line {self.number}", what))
         elif match := _ASC_TIME.match(line):
             t = float(match[1])
             self._t = self._t + t if self._is_relative else t
@@ -321,7 +326,7 @@ class TextReader(_Messages):
 
     def __init__(self, stream: BufferedReader, options: ReadOptions, kind: str) -> None:
         super().__init__(options, "line")
-        self._lines = _Lines(stream, kind, options.name)
+        self._lines = _Lines(stream, kind, options.name, self.damage)
         self._kind = kind
         self._name = options.name
         self._named = 0

@@ -14,17 +14,20 @@ _DATES: Final = (
     "%Y-%m-%d", "%Y/%m/%d", "%Y.%m.%d", "%d.%m.%Y", "%m/%d/%Y", "%d/%m/%Y", "%d-%m-%Y",
     "%d.%m.%y", "%m/%d/%y", "%d/%m/%y", "%y-%m-%d",
 )  # fmt: skip
-_MONTHS: Final = (
-    b"jan", b"feb", b"mar", b"apr", b"may", b"jun", b"jul", b"aug", b"sep", b"oct", b"nov", b"dec",
-)  # fmt: skip
+# In English and German, of which one has a letter of two encodings.
+_MONTHS: Final = {
+    b"jan": 1, b"feb": 2, b"mar": 3, b"apr": 4, b"may": 5, b"jun": 6, b"jul": 7, b"aug": 8, b"sep": 9, b"oct": 10,
+    b"nov": 11, b"dec": 12, b"m\xe4r": 3, b"m\xc3\xa4r": 3, b"mrz": 3, b"mai": 5, b"okt": 10, b"dez": 12,
+}  # fmt: skip
+_WEEKDAYS: Final = rb"(?:mon|tue|wed|thu|fri|sat|sun|die|mit|don|fre|sam|son|mo|di|mi|do|fr|sa|so)"
 # A date without a year is counted from a year that has no 29 February, unless that day comes.
 _YEAR, _LEAP_YEAR = 1970, 1972
-_MONTH: Final = rb"(?:" + b"|".join(_MONTHS) + rb")"
+_MONTH: Final = rb"(?:" + b"|".join(map(re.escape, _MONTHS)) + rb")"
 # 2026-11-25, 25.11.26, 11-25 as logcat has it, Nov 25 of syslog, Wed Nov 25 of ctime, 25 Nov 2026, 25/Nov/2026.
 _DATE: Final = (
     rb"(?P<date>\d{4}([-/.])\d\d?\2\d\d?|\d\d?([-/.])\d\d?\3(?:\d{4}|\d\d))[ T,]+"
     rb"|(?P<short>\d\d-\d\d)[ ]+"
-    rb"|(?P<weekday>(?:mon|tue|wed|thu|fri|sat|sun)[a-z]*\.?,?[ ]+)?"
+    rb"|(?P<weekday>" + _WEEKDAYS + rb"[a-z]*\.?,?[ ]+)?"
     rb"(?:(?P<month>" + _MONTH + rb")[a-z]*\.?[ ]+(?P<day>\d\d?),?(?:[ ]+(?P<year>\d{4}))?"
     rb"|(?P<first>\d\d?)[ /-](?P<second>" + _MONTH + rb")[a-z]*\.?[ /-](?P<third>\d{4}))[ :T,]+"
 )
@@ -111,7 +114,7 @@ def _day(match: re.Match[bytes]) -> tuple[int | None, int, bytes | None]:
     if name is None:
         return None, 0, None
     day = int(match["day"] or match["first"])
-    return _MONTHS.index(name.lower()) + 1, day, match["year"] or match["third"] or match["behind"]
+    return _MONTHS[name.lower()], day, match["year"] or match["third"] or match["behind"]
 
 
 def _zone_s(match: re.Match[bytes]) -> float:
