@@ -94,7 +94,7 @@ def draw_fig10(path: Path, drive: Drive) -> None:
         place.set_title(
             f"Sonar {DEAD} dead, profile paper: a stop each 200 mm, a turn at each; {end}", fontsize=10
         )
-        place.legend(loc="lower left", fontsize=8)
+        figure.legend(loc="outside lower center", ncols=3, fontsize=8)
 
 
 def _draw_stop(place: Axes, stop: Stop) -> None:

@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 from argus_tools.formats import formats
 from logs import ROOT, decode, run
+from matplotlib.image import imread
 
 DOCS = (ROOT / "docs" / "logs.md").read_text()
 SAMPLE = ROOT / "docs" / "samples" / "two-failing-sonars.rec.gz"
@@ -57,6 +58,21 @@ def test_the_drive_shows_what_the_text_says() -> None:
     assert f"```\n{told}```" in DOCS, f"docs/logs.md shows another result; it is now:\n{told}"
     assert any(line in DOCS for line in run("decode", SAMPLE).stdout.decode().splitlines()[1:])
     assert re.search(r"^ *3 +\d+ .* 64\.\d%", run("stats", SAMPLE).stdout.decode(), re.MULTILINE)
+
+
+@pytest.mark.parametrize(
+    ("picture", "arguments"),
+    [("logs-sonars.png", ("--sonar", "0-7")), ("ring.png", ("--view", "ring", "--at", "+60"))],
+)
+def test_the_pictures_are_what_the_fault_manager_says_now(
+    picture: str, arguments: tuple[str, ...], tmp_path: Path
+) -> None:
+    done = run("plot", SAMPLE, "-o", tmp_path / picture, *arguments)
+    assert done.returncode == 0, done.stderr.decode()
+    shown, made = imread(ROOT / "docs/img" / picture), imread(tmp_path / picture)
+    assert shown.shape == made.shape
+    # Another release of the library that draws may smooth an edge otherwise; a suspect that is none is a whole area.
+    assert float((abs(shown - made).max(axis=2) > 0.1).mean()) < 0.002
 
 
 def test_the_sample_is_a_whole_session_and_small() -> None:

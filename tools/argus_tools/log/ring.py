@@ -24,6 +24,7 @@ EXAMPLES: Final = """\
 """
 _TINT: Final = {"ahead": "#0072b2", "astern": "#009e73", "abeam": "#e69f00", "none": "#999999"}
 _CONE_MM: Final = 450.0
+_NUMBER_MM: Final = 40.0
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -101,12 +102,13 @@ def drawn(robot: RobotTable) -> Any:
         turn = math.radians(up)
         tip = at[0] + _CONE_MM * math.cos(turn), at[1] + _CONE_MM * math.sin(turn)
         axes.annotate("", tip, at, arrowprops={"arrowstyle": "->", "color": tint})
+        beyond = tip[0] + _NUMBER_MM * math.cos(turn), tip[1] + _NUMBER_MM * math.sin(turn)
         is_forward = number in robot.forward
-        axes.text(*tip, str(number), ha="center", va="center", weight="bold" if is_forward else "normal")
+        axes.text(*beyond, str(number), ha="center", va="center", weight="bold" if is_forward else "normal")
     for role, tint in _TINT.items():
         if any(mount.role == role for mount in robot.mounts):
             axes.plot([], [], color=tint, label=role)
-    reach = robot.body.reach_mm + _CONE_MM + 60
+    reach = robot.body.reach_mm + _CONE_MM + 2 * _NUMBER_MM
     axes.set(xlim=(-reach, reach), ylim=(-reach, reach), xlabel="right, mm", ylabel="ahead, mm")
     axes.set_title(f"{robot.subclass}: ahead is up; bold numbers face forward")
     axes.legend(loc="lower right")
