@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, Final
 
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
@@ -27,6 +27,9 @@ from hil_sim.demo.ink import (
 from hil_sim.demo.scene import Drive, area, doubted_s, failure_since_s, hits, loops, standstills, window
 from hil_sim.world.model import World
 
+SMOOTH: Final = 0.05
+"""A surface below it mirrors sound: it is heard head-on only."""
+
 
 def _draw_world(axes: Axes, world: World) -> None:
     outlines = sorted(loops(world), key=area, reverse=True)
@@ -46,6 +49,12 @@ def _draw_world(axes: Axes, world: World) -> None:
         )
     lines = [((a, b), (c, d)) for a, b, c, d in world.segments]
     axes.add_collection(LineCollection(lines, colors=INK, linewidths=2.2, capstyle="round", zorder=2))
+    smooth = [line for line, rough in zip(lines, world.roughness, strict=True) if _is_smooth(rough)]
+    axes.add_collection(LineCollection(smooth, colors=SKY, linewidths=5.0, capstyle="butt", zorder=1.9))
+
+
+def _is_smooth(roughness: float) -> bool:
+    return roughness < SMOOTH
 
 
 def _draw_hits(axes: Axes, drive: Drive) -> None:
@@ -174,6 +183,10 @@ def legend(axes: Axes, drive: Drive) -> None:
         (
             bool(drive.said("SWEEP")),
             Patch(facecolor=ORANGE, alpha=0.3, label="sweep over the blind bearings"),
+        ),
+        (
+            any(map(_is_smooth, drive.world.roughness)),
+            Line2D([], [], color=SKY, lw=5.0, label="smooth, as glass: mirrors sound"),
         ),
         (any(f.injected for f in findings), dot("v", RED, INK, 10, "a fault comes (shaded: its beam)")),
         (_is_doubted(drive), dot("p", ORANGE, INK, 9, "it is doubted: others are relied on")),
