@@ -3,12 +3,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from decimal import Decimal
 from itertools import chain, groupby, pairwise
 from math import gcd
 from statistics import median
-from typing import Final, Self
+from typing import Any, Final, Generic, NamedTuple, Self, TypeVar
 
 from argus_tools.chunks import Chunk, Damage, DamageList
 
@@ -38,6 +38,21 @@ SECOND_MOST: Final = 400
 STEP_MOST_S: Final = 10
 STEP_LEAST: Final = 5
 """A clock of steps of several seconds has so many chunks a second in most of them; a link that pauses has fewer."""
+
+
+Body = TypeVar("Body")
+
+
+class Item(NamedTuple, Generic[Body]):
+    """What has a time and is no chunk; `data` is as long as what a link would have carried for it."""
+
+    t: float | None
+    data: bytes
+    place: str
+    body: Body
+
+
+Timed = TypeVar("Timed", Chunk, Item[Any])
 
 
 class Wrapping(float):
@@ -73,8 +88,8 @@ def nanoseconds(t: float) -> int:
     return max(0, round(Decimal(repr(float(t))).scaleb(9)))
 
 
-class Timeline:
-    """Iterates chunks with their times made rising; what had to be corrected is appended to `damage`.
+class Timeline(Generic[Timed]):
+    """Iterates chunks, or items, with their times made rising; what had to be corrected is appended to `damage`.
 
     Small disorder (DISORDER_S) is left as it is. A clock of the day goes on over midnight, one without a year over
     New Year. One that falls goes on from where it was, and so does one that is set ahead: from a time since boot to
@@ -90,9 +105,9 @@ class Timeline:
     """
 
     def __init__(
-        self, chunks: Iterable[Chunk], damage: DamageList, is_followed: bool = False, most: int = SECOND_MOST
+        self, chunks: Iterable[Timed], damage: DamageList, is_followed: bool = False, most: int = SECOND_MOST
     ) -> None:
-        self._chunks = chunks
+        self._chunks: Iterable[Timed] = chunks
         self._is_followed = is_followed
         self._damage = damage
         self._most = most
@@ -103,12 +118,12 @@ class Timeline:
         self._stands_at: float | None = None
         self._told_at: float | None = None
 
-    def __iter__(self) -> Iterator[Chunk]:
+    def __iter__(self) -> Iterator[Timed]:
         return self._moving(
             self._paced(self._rising()) if self._is_followed else self._spread(self._rising())
         )
 
-    def _rising(self) -> Iterator[Chunk]:
+    def _rising(self) -> Iterator[Timed]:
         for chunk in self._chunks:
             t = chunk.t
             if t is None:
@@ -137,7 +152,7 @@ class Timeline:
         """Whether times are taken as they are, and no midnight has just passed."""
         return not self._add_s and self._before_s is None
 
-    def _follow(self, chunk: Chunk, t: float, last: float) -> None:
+    def _follow(self, chunk: Timed, t: float, last: float) -> None:
         """Change what is added to the times where the clock stepped between `last`, as corrected, and `t`."""
         now = t + self._add_s
         before_s = self._before_s
@@ -158,8 +173,11 @@ class Timeline:
             self._add_s = last + _passed_s(t) - t
             self._report(chunk, f"the clock is set {now - last:.0f} s ahead; times go on from before")
 
-    def _report(self, chunk: Chunk, what: str) -> None:
-        place = getattr(self._chunks, "place", "") or f"byte {chunk.offset} of {chunk.dir}"
+    def _report(self, chunk: Timed, what: str) -> None:
+        if isinstance(chunk, Item):
+            place = chunk.place
+        else:
+            place = getattr(self._chunks, "place", "") or f"byte {chunk.offset} of {chunk.dir}"
         self._damage.correct(Damage(place, what))
 
     def _report_coarse(self, step_s: int = 1) -> None:
@@ -177,12 +195,12 @@ class Timeline:
             what = f"stands at {t}: when that came which has this time is not known"
             self._damage.correct(Damage("its clock", what))
 
-    def _moving(self, chunks: Iterator[Chunk]) -> Iterator[Chunk]:
+    def _moving(self, chunks: Iterator[Timed]) -> Iterator[Timed]:
         """Take the time from what comes while the clock stands, but for the first: when it came is not known.
 
         What may be such is held until that is clear, unless the log is followed.
         """
-        held: list[Chunk] = []
+        held: list[Timed] = []
         last: float | None = None
         count = size = 0
         for chunk in chunks:
@@ -210,7 +228,7 @@ class Timeline:
                 held = []
         yield from held
 
-    def _paced(self, chunks: Iterator[Chunk]) -> Iterator[Chunk]:
+    def _paced(self, chunks: Iterator[Timed]) -> Iterator[Timed]:
         """Spread whole seconds without a look ahead."""
         last: float | None = None
         seconds = size = before = 0
@@ -229,8 +247,8 @@ class Timeline:
             yield chunk
         yield from chunks
 
-    def _spread(self, chunks: Iterator[Chunk]) -> Iterator[Chunk]:
-        head: list[Chunk] = []
+    def _spread(self, chunks: Iterator[Timed]) -> Iterator[Timed]:
+        head: list[Timed] = []
         step_s: int | None = None
         for chunk in chunks:
             head.append(chunk)
@@ -244,7 +262,7 @@ class Timeline:
             yield from chunks
             return
         self._report_coarse(step_s)
-        held: list[Chunk] = []
+        held: list[Timed] = []
         stands = False
         for chunk in chain(head, chunks):
             if held and chunk.t != held[0].t:
@@ -284,7 +302,7 @@ def _period(t: float, raw: float) -> float | None:
     )
 
 
-def _step_s(head: list[Chunk], most: int) -> int | None:
+def _step_s(head: Sequence[Timed], most: int) -> int | None:
     """Return the whole seconds by which a clock steps, by a log's beginning; 0: it is finer; None: not known yet.
 
     It passes on by these, with several chunks in most of those that are over; the first may be cut.
@@ -308,11 +326,11 @@ def _step_s(head: list[Chunk], most: int) -> int | None:
     return int(2 * sum(size > 1 for size in over) > len(over))
 
 
-def _bytes(chunks: list[Chunk]) -> int:
+def _bytes(chunks: Sequence[Timed]) -> int:
     return sum(len(chunk.data) for chunk in chunks)
 
 
-def _evenly(second: list[Chunk], step_s: int) -> Iterator[Chunk]:
+def _evenly(second: Sequence[Timed], step_s: int) -> Iterator[Timed]:
     """Yield chunks of one second, or of one step of a coarser clock, spread over it."""
     for number, chunk in enumerate(second):
         t = chunk.t

@@ -6,7 +6,7 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections import Counter, deque
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from io import BufferedReader
@@ -27,7 +27,7 @@ from argus_tools.rings.motion import Motion
 from argus_tools.rings.packet import identity_of
 from argus_tools.rings.packets import SIP_S, Pacer
 from argus_tools.rings.silence import Silence
-from argus_tools.timeline import Timeline
+from argus_tools.timeline import Item, Timeline
 from hil_sim.arcos import frame
 from hil_sim.arguments import offer
 from hil_sim.tables.robot import DEFAULT_ROBOT, robot_table
@@ -220,17 +220,15 @@ class ColumnsLog:
         offsets, last, motion = Offsets(), -math.inf, Motion()
         discarded: Counter[str] = Counter()
         pacer = Pacer(self._table, True, lambda _: motion)
-        timed = _Timed(rows, reader)
         stands = False
-        for chunk in Timeline(timed, self.damage):
-            number, row = timed.rows.popleft()
-            self.place = f"line {number}"
+        for item in Timeline(_items(rows, reader), self.damage):
+            self.place, row = item.place, item.body
             ranges = reader.ranges(row)
             place = reader.motion(row)
             if not ranges and place is None:
                 continue
-            stood, stands = stands, chunk.t is None
-            t = chunk.t
+            stood, stands = stands, item.t is None
+            t = item.t
             if t is None:
                 t = last + SIP_S if math.isfinite(last) else 0.0
             if stood and not stands:
@@ -251,21 +249,12 @@ class ColumnsLog:
             self._options.tell(f"discarded: {count} x {what}")
 
 
-class _Timed:
-    """Rows in place of the packets that they become: their times are made rising as those of any log are."""
-
-    def __init__(self, rows: Iterator[Row], reader: _Reading) -> None:
-        self._rows, self._reader = rows, reader
-        self.rows: deque[Row] = deque()
-        self.place = ""
-
-    def __iter__(self) -> Iterator[Chunk]:
-        for number, row in self._rows:
-            t = self._reader.time(row)
-            if math.isfinite(t):
-                self.place = f"line {number}"
-                self.rows.append((number, row))
-                yield Chunk(t, ROBOT_TO_CLIENT, bytes(SIP_BYTES), number)
+def _items(rows: Iterator[Row], reader: _Reading) -> Iterator[Item[dict[str, Any]]]:
+    """Yield rows with their times, each in place of the packet that it becomes."""
+    for number, row in rows:
+        t = reader.time(row)
+        if math.isfinite(t):
+            yield Item(t, bytes(SIP_BYTES), f"line {number}", row)
 
 
 class _Reading:

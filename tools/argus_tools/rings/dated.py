@@ -7,10 +7,10 @@ from collections import deque
 from collections.abc import Collection, Iterable, Iterator
 from typing import Final
 
-from argus_tools.chunks import ROBOT_TO_CLIENT, Chunk, DamageList
+from argus_tools.chunks import DamageList
 from argus_tools.rings.intake import Odd, stamp_of
 from argus_tools.rings.recording import Message
-from argus_tools.timeline import DISORDER_S, STANDS_BYTES, STANDS_CHUNKS, STEP_S, Stepped, Timeline
+from argus_tools.timeline import DISORDER_S, STANDS_BYTES, STANDS_CHUNKS, STEP_S, Item, Stepped, Timeline
 
 CYCLE_BYTES: Final = STANDS_BYTES // STANDS_CHUNKS
 """As much counts a cycle of the ring to the timeline, whose messages are of no serial port."""
@@ -33,32 +33,27 @@ class Dated:
     def __init__(self, messages: Iterable[Message], ring: Collection[str], damage: DamageList) -> None:
         self._messages, self._ring, self._damage = iter(messages), frozenset(ring), damage
         self._peeked: deque[Message] = deque()
-        self._held: deque[tuple[Message, bool]] = deque()
         self._seen: set[tuple[str, str]] = set()
         self._stamps: dict[str, tuple[float, float]] = {}
         self._last: float | None = None
-        self.place = ""
 
     def __iter__(self) -> Iterator[tuple[Message, bool]]:
         now = 0.0
-        for chunk in Timeline(_Chunks(self), self._damage, most=SECOND_MOST):
-            message, begins = self._held.popleft()
-            stands = chunk.t is None
-            if chunk.t is not None:
-                now = chunk.t
-            elif begins:
+        for item in Timeline(self._items(), self._damage, most=SECOND_MOST):
+            stands = item.t is None
+            if item.t is not None:
+                now = item.t
+            elif item.data:
                 now = round(now + STEP_S, 9)
-            yield message._replace(t=now), stands
+            yield item.body._replace(t=now), stands
 
-    def chunks(self) -> Iterator[Chunk]:
-        """Yield a chunk in place of each message, and hold the message."""
-        for number, message in enumerate(self._coming()):
-            self.place = f"{message.topic} at {message.t:.3f} s"
-            begins = self._begins(message)
-            self._held.append((message, begins))
+    def _items(self) -> Iterator[Item[Message]]:
+        """Yield the messages as they come; the one with which a cycle begins has the cycle's bytes."""
+        for message in self._coming():
             passed_s = self._passed_s(message)
             t = message.t if passed_s is None else Stepped(message.t, passed_s)
-            yield Chunk(t, ROBOT_TO_CLIENT, bytes(CYCLE_BYTES + 1 if begins else 0), number)
+            size = CYCLE_BYTES + 1 if self._begins(message) else 0
+            yield Item(t, bytes(size), f"{message.topic} at {message.t:.3f} s", message)
 
     def _begins(self, message: Message) -> bool:
         """Whether a cycle begins: a topic and frame come again."""
@@ -110,21 +105,6 @@ class Dated:
                 passed_s = other_s - stamp_s
                 return abs(other.t - message.t - passed_s) < max(passed_s / 2, JITTER_S)
         return False
-
-
-class _Chunks:
-    """Chunks in place of messages, with the place of the last."""
-
-    def __init__(self, dated: Dated) -> None:
-        self._dated = dated
-
-    def __iter__(self) -> Iterator[Chunk]:
-        return self._dated.chunks()
-
-    @property
-    def place(self) -> str:
-        """Which message came last."""
-        return self._dated.place
 
 
 def _stamp_of(message: Message) -> float | None:
