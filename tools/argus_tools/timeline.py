@@ -263,10 +263,11 @@ class Timeline(Generic[Timed]):
             return
         self._report_coarse(step_s)
         held: list[Timed] = []
-        stands = False
+        usual, stands = _usual(head), False
         for chunk in chain(head, chunks):
             if held and chunk.t != held[0].t:
-                yield from held[1:] if stands else _evenly(held, step_s)
+                missing = max(0, usual - len(held)) if held[0] is head[0] else 0
+                yield from held[1:] if stands else _evenly(held, step_s, missing)
                 held, stands = [], False
             if stands:
                 yield chunk
@@ -277,7 +278,7 @@ class Timeline(Generic[Timed]):
                 self._report_standing(chunk.t)
                 yield from held
                 held, stands = held[:1], True
-        yield from held[1:] if stands else _evenly(held, step_s)
+        yield from held[1:] if stands else _evenly(held, step_s, 0, max(0, usual - len(held)))
 
 
 def _passed_s(t: float) -> float:
@@ -330,8 +331,18 @@ def _bytes(chunks: Sequence[Timed]) -> int:
     return sum(len(chunk.data) for chunk in chunks)
 
 
-def _evenly(second: Sequence[Timed], step_s: int) -> Iterator[Timed]:
-    """Yield chunks of one second, or of one step of a coarser clock, spread over it."""
-    for number, chunk in enumerate(second):
+def _usual(head: Sequence[Timed]) -> int:
+    """Return how many chunks a whole step has, by a log's beginning."""
+    steps = [len(list(step)) for _, step in groupby(head, key=lambda chunk: chunk.t)]
+    return round(median(steps[1:-1]))
+
+
+def _evenly(second: Sequence[Timed], step_s: int, before: int = 0, behind: int = 0) -> Iterator[Timed]:
+    """Yield chunks of one second, or of one step of a coarser clock, spread over it.
+
+    before, behind: so many more it would have, had the log begun earlier, or ended later.
+    """
+    size = before + len(second) + behind
+    for number, chunk in enumerate(second, before):
         t = chunk.t
-        yield chunk if t is None else chunk._replace(t=round(t + step_s * number / len(second), 6))
+        yield chunk if t is None else chunk._replace(t=round(t + step_s * number / size, 6))

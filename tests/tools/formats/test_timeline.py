@@ -167,10 +167,24 @@ def test_what_a_late_reader_finds_waiting_is_no_clock_that_stands() -> None:
     assert (found, list(damage)) == (given, [])
 
 
+@pytest.mark.parametrize("step_s", [1, 2])
+@pytest.mark.parametrize("last", range(1, 11))
+@pytest.mark.parametrize("first", range(1, 11))
+def test_seconds_that_are_cut_have_no_other_rate_than_the_whole_ones(
+    first: int, last: int, step_s: int
+) -> None:
+    counts = [first * step_s, *[10 * step_s] * 5, last * step_s]
+    given: list[float | None] = [step_s * (7.0 + k) for k, count in enumerate(counts) for _ in range(count)]
+    found, _ = times(given)
+    assert [round(b - a, 6) for a, b in itertools.pairwise(found) if a is not None and b is not None] == [
+        0.1
+    ] * (len(given) - 1)
+
+
 def test_a_first_second_that_is_cut_does_not_hide_whole_seconds() -> None:
     given: list[float | None] = [6.0, *(t for t in (7.0, 8.0, 9.0, 10.0) for _ in range(4))]
     found, told = times(given)
-    assert found[:6] == [6.0, 7.0, 7.25, 7.5, 7.75, 8.0]
+    assert found[:6] == [6.75, 7.0, 7.25, 7.5, 7.75, 8.0]
     assert told == [("its clock", "gives whole seconds")]
 
 
