@@ -241,6 +241,19 @@ def test_with_leave_and_no_sonar_left_it_may_creep(v: int, broken: set[int]) -> 
     assert trace.rules & {11, 12} == broken
 
 
+@pytest.mark.parametrize(("seto", "broken"), [(True, set()), (False, {11})])
+def test_a_new_origin_is_no_way_back(seto: bool, broken: set[int]) -> None:
+    """A client lets the robot count from here while one that looks astern is out: nobody drove astern."""
+    trace = Trace(guard=1).sip().say(6, 100).say(8, 3000)
+    trace.monitor.health([("DISABLED", "off") if n == 11 else ("HEALTHY", "none") for n in ARRAY])
+    for _ in range(39):
+        trace.sip(v=100)
+    if seto:
+        trace.say(7)
+    trace.x = 0
+    assert trace.sip(v=100).rules & {11} == broken
+
+
 def test_bytes_that_are_no_packet_are_found() -> None:
     trace = Trace()
     trace.monitor.to_robot(trace.t_ms, packet(b"\x1d")[:-1] + b"\x00")

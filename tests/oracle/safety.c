@@ -47,6 +47,9 @@ enum {
 #define STEEP_DEG 35.0      // a sonar that looks farther aside sees nothing of the way that the body does not cover
 #define BACKOFF_MM 300.0    // a step back is never longer: it has rules of its own
 #define WATCHDOG_MS 2000u
+#define NEW_ORIGIN_SIPS 5 // of the old one may be under way when it is told to count anew
+#define NEW_ORIGIN_UNITS 80.0
+#define NEW_ORIGIN_DEG 15.0
 // clang-format on
 
 static double radians(double deg) {
@@ -436,10 +439,22 @@ static void check_alone(safety_t *self, double way_mm) {
 
 // ---- from the robot: a SIP
 
+// It was told to count from here, and does so since this SIP: no way was driven, and the pose stays.
+static bool begins_anew(safety_t *self, int32_t x, int32_t y, int32_t turn) {
+    const double near = NEW_ORIGIN_UNITS, at = hypot(x, y), from = hypot(self->raw_x, self->raw_y);
+    const double by = fabs(wrapped((turn - self->raw_deg) * 360.0 / 4096.0));
+    const bool fits = at <= near && fabs(wrapped(turn * 360.0 / 4096.0)) <= NEW_ORIGIN_DEG;
+    const bool anew = self->origin_sips > 0 && fits && (from > near || by > NEW_ORIGIN_DEG);
+    self->origin_sips = anew ? 0 : self->origin_sips - (self->origin_sips > 0);
+    return anew;
+}
+
 static double step_pose(safety_t *self, const uint8_t *data) {
     const int32_t x = signed16(data + 1), y = signed16(data + 3), turn = signed16(data + 5);
     double way = 0;
-    if (self->has_pose) {
+    if (self->has_pose && begins_anew(self, x, y, turn)) {
+        way = 0;
+    } else if (self->has_pose) {
         // Only 15 bits of a position are sure.
         const int32_t dx = (((x - self->raw_x) & 0x7fff) ^ 0x4000) - 0x4000;
         const int32_t dy = (((y - self->raw_y) & 0x7fff) ^ 0x4000) - 0x4000;
@@ -853,6 +868,9 @@ static void order(safety_t *self, uint8_t command, int32_t value, const uint8_t 
                                                                      : self->set.speed_mm_s)) {
             report(self, SAFETY_S5_CEILING, self->now_ms, "SETV %d", (int)value);
         }
+        break;
+    case SETO:
+        self->origin_sips = NEW_ORIGIN_SIPS;
         break;
     case CLOSE:
         forget_session(self);

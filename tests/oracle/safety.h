@@ -117,6 +117,7 @@ typedef struct {
     bool open, answered, has_sip, has_pose;
     uint32_t opened_ms, sip_ms, checked_ms; // checked_ms: from when on every sonar ahead must report
     int32_t raw_x, raw_y, raw_deg;
+    int32_t origin_sips; // so many more SIPs may be the first that counts from a new origin (SETO)
     safety_pose_t pose;
     double v_mm_s, w_deg_s;
     uint32_t bumpers, stalls; // front segments << 8 | rear; bit 0 left, bit 1 right
