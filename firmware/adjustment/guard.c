@@ -61,11 +61,11 @@ static argus_mask_t asked_of(const argus_guard_t *const self) {
     return (argus_mask_t)(self->profile->asks_echo ? (ahead != 0 ? ahead : used) : 0u);
 }
 
-// An array fails as a whole: any of its sonars tells that it lives.
+// The end that leads fails as a whole: any of its sonars tells that it lives, and none that looks astern.
 bool argus_guard_has_led(const argus_guard_t *const self) {
     const argus_knowledge_t *const knowledge = self->knowledge;
     const argus_mask_t asked = asked_of(self);
-    const unsigned live = argus_robot_polled(knowledge->robot) & ~(unsigned)argus_out(knowledge);
+    const unsigned live = argus_robot_leading(knowledge->robot) & ~(unsigned)argus_out(knowledge);
     const uint32_t unheard_mm = argus_unheard_mm(knowledge, (argus_mask_t)live);
     const uint32_t led_mm = knowledge->odometer_mm - self->reverse.odometer_mm;
     const bool first = (knowledge->heard & asked) == 0 && !self->reverse.done;

@@ -180,15 +180,41 @@ static argus_mask_t silent_of(const argus_common_t *const self, const argus_mask
     return (argus_mask_t)silent;
 }
 
-// All of an array in use that is silent as a whole; else those of it that lost their echoes at once. Those
-// of one that has failed are out by now.
+static argus_mask_t leading_of(const argus_knowledge_t *const knowledge, const argus_mask_t in_use) {
+    return (argus_mask_t)(in_use & (unsigned)argus_robot_leading(knowledge->robot));
+}
+
+// One of these has heard something while the others were dark.
+static bool lives(const argus_common_t *const self, const argus_dark_t *const dark, const unsigned sonars) {
+    bool heard = false;
+    for (int i = 0; i < ARGUS_SONARS; i++) {
+        const uint32_t since_ms = self->echo_ms[i] - dark->since_ms;
+        heard = heard || ((sonars >> i & 1u) != 0 && self->echoed[i] && since_ms <= INT32_MAX &&
+                          since_ms > ARGUS_DARK_AT_ONCE_MS);
+    }
+    return dark->sonars != 0 && heard;
+}
+
+// What fails as a whole: an array in use. Of one that looks to both ends it is what does not look astern
+// where the rest of it hears: an echo behind shows no living end ahead.
+static argus_mask_t whole_of(const argus_common_t *const self, const argus_knowledge_t *const knowledge,
+                             const argus_dark_t *const dark, const argus_mask_t in_use) {
+    const unsigned leading = leading_of(knowledge, in_use);
+    const bool parts = argus_count_bits((argus_mask_t)leading) >= ARGUS_DARK_LEAST;
+    const bool apart = silent_of(self, in_use) != in_use || lives(self, dark, in_use & ~leading);
+    return parts && apart ? (argus_mask_t)leading : in_use;
+}
+
+// The whole where it is silent; else those that lost their echoes at once. Those of one that has failed are
+// out by now.
 static argus_mask_t members(const argus_common_t *const self, const argus_knowledge_t *const knowledge,
-                            const argus_dark_t *const dark, const argus_mask_t in_use) {
+                            const argus_dark_t *const dark, const argus_mask_t in_use,
+                            const argus_mask_t whole) {
     const argus_mask_t silent = silent_of(self, in_use);
     if (dark->proven) {
         return dark->sonars;
     }
-    return silent == in_use ? in_use : lost_at_once(self, knowledge, silent);
+    return (whole & ~(unsigned)silent) == 0 ? whole : lost_at_once(self, knowledge, silent);
 }
 
 // It heard something ahead, twice, and the robot has gone on towards it since.
@@ -262,17 +288,24 @@ static void begin(const argus_common_t *const self, const argus_evidence_t *cons
     dark->tells = tells_at_once(self, evidence, knowledge, sonars);
 }
 
+// The end ahead was dark alone, and now what looks astern is as well: the whole goes on from here.
+static bool widens(const argus_knowledge_t *const knowledge, const argus_dark_t *const dark,
+                   const argus_mask_t in_use, const argus_mask_t sonars) {
+    return dark->sonars == leading_of(knowledge, in_use) && sonars == in_use && dark->sonars != in_use;
+}
+
 static void look_at(argus_common_t *const self, const argus_evidence_t *const evidence,
                     const argus_knowledge_t *const knowledge, const int array) {
     argus_dark_t *const dark = &self->of[array];
     const argus_mask_t all = argus_robot_array(knowledge->robot, array);
     const argus_mask_t its = (argus_mask_t)(all & ~(unsigned)argus_robot_sectors(knowledge->robot));
     const argus_mask_t in_use = (argus_mask_t)(its & ~(unsigned)argus_out(knowledge));
-    const argus_mask_t sonars = members(self, knowledge, dark, in_use);
-    const bool whole = sonars == in_use;
+    const argus_mask_t parts = whole_of(self, knowledge, dark, in_use);
+    const argus_mask_t sonars = members(self, knowledge, dark, in_use, parts);
+    const bool whole = sonars == parts;
     const int least = whole ? ARGUS_DARK_LEAST : ARGUS_DARK_LEAST_OF_SOME;
     const int run = argus_count_bits(sonars) >= least ? least_run(self, sonars) : 0;
-    const bool was_dark = dark->sonars != 0;
+    const bool was_dark = dark->sonars != 0 && !widens(knowledge, dark, in_use, sonars);
     const bool at_once =
         was_dark ? dark->at_once : argus_count_bits(lost_at_once(self, knowledge, sonars)) >= least;
     if (run == 0 || (!whole && !at_once)) {
@@ -287,7 +320,7 @@ static void look_at(argus_common_t *const self, const argus_evidence_t *const ev
     count_lost(self, evidence, knowledge, dark);
     dark->news = (!was_dark && at_once) || comes_to_doubt(dark, run);
     pass_all(dark, evidence, knowledge);
-    const int hear = argus_count_bits(in_use) - argus_count_bits(sonars);
+    const int hear = argus_count_bits(parts) - argus_count_bits(sonars);
     dark->proven |= is_proven(dark, knowledge, run, hear);
 }
 

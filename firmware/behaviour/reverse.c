@@ -27,7 +27,7 @@ static argus_mask_t lost_of(const argus_t *const self, const argus_robot_t *cons
 static int lost_count(const argus_t *const self, const argus_robot_t *const end) {
     const argus_mask_t forward = argus_robot_forward(end);
     const bool unheard = (self->knowledge.heard & forward) == 0 ||
-                         argus_unheard_mm(&self->knowledge, argus_robot_polled(end)) >= ARGUS_LEAD_MM;
+                         argus_unheard_mm(&self->knowledge, argus_robot_leading(end)) >= ARGUS_LEAD_MM;
     return argus_count_bits(argus_rules(self)->asks_echo && unheard ? forward : lost_of(self, end));
 }
 
@@ -94,6 +94,6 @@ bool argus_should_hand_back(const argus_t *const self) {
         argus_count_bits(lost_of(self, front)) > OTHER_LOST) {
         return false;
     }
-    const bool lives = argus_unheard_mm(&self->knowledge, argus_robot_polled(front)) <= led_mm;
+    const bool lives = argus_unheard_mm(&self->knowledge, argus_robot_leading(front)) <= led_mm;
     return argus_rules(self)->asks_echo && (lives || !hears_ahead(self)) && is_safe(self, front);
 }

@@ -156,6 +156,10 @@ argus_mask_t argus_robot_polled(const argus_robot_t *const self) {
     return (argus_mask_t)mask;
 }
 
+argus_mask_t argus_robot_leading(const argus_robot_t *const self) {
+    return (argus_mask_t)(argus_robot_polled(self) & ~(uint32_t)argus_robot_astern(self));
+}
+
 bool argus_robot_faces_forward(const argus_robot_t *const self, const int sonar) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     return (argus_robot_forward(self) >> sonar & 1u) != 0;

@@ -56,6 +56,7 @@ argus_mask_t argus_robot_flank(const argus_robot_t *self);
 argus_mask_t argus_robot_rear_flank(const argus_robot_t *self);
 argus_mask_t argus_robot_array(const argus_robot_t *self, int array);
 argus_mask_t argus_robot_polled(const argus_robot_t *self);  // all of the arrays of those that face forward
+argus_mask_t argus_robot_leading(const argus_robot_t *self); // ... without those that look astern
 argus_mask_t argus_robot_looking(const argus_robot_t *self); // that may cover for others
 argus_mask_t argus_robot_sectors(const argus_robot_t *self); // of a laser's scan
 static inline bool argus_robot_is_sector(const argus_robot_t *const self, const int sonar) {

@@ -384,3 +384,51 @@ void test_who_hears_again_is_left_to_the_evidence(void) {
     drive(5, 0);
     TEST_ASSERT_EQUAL(0, convicted());
 }
+
+// An AmigoBot has one array for both ends: 0 to 5 look ahead and abeam, 6 and 7 astern.
+#define AMIGO_AHEAD 0x3Fu
+#define AMIGO_ALL 0xFFu
+
+static void become_amigo_bot(void) {
+    k.robot = argus_robot_find("amigo-sh");
+    k.sonars = argus_robot_sonars(k.robot);
+}
+
+void test_an_echo_astern_shows_no_living_end_ahead(void) {
+    become_amigo_bot();
+    drive(20, 200);
+    darken(AMIGO_AHEAD);
+    drive(15, 200);
+    TEST_ASSERT_EQUAL_HEX(AMIGO_AHEAD, convicted());
+}
+
+// Where nothing was heard before there is a doubt alone; an echo behind does not end it, one ahead does.
+void test_an_echo_astern_ends_no_doubt_of_what_looks_ahead(void) {
+    for (int ahead = 0; ahead < 2; ahead++) {
+        setUp();
+        become_amigo_bot();
+        darken(AMIGO_ALL);
+        drive(20, 200);
+        argus_common_touched(&c, argus_robot_ahead(k.robot));
+        drive(4, 200);
+        TEST_ASSERT_TRUE(argus_common_doubts(&c, 2));
+        range_mm[ahead != 0 ? 2 : 6] = 1500;
+        drive(4, 200);
+        TEST_ASSERT_EQUAL(ahead == 0, argus_common_doubts(&c, 2));
+        TEST_ASSERT_FALSE(argus_common_doubts(&c, 6));
+    }
+}
+
+// One astern that has heard something since lives; else all have failed together.
+void test_what_looks_astern_fails_with_the_rest_unless_it_has_heard_since(void) {
+    for (int lives = 0; lives < 2; lives++) {
+        setUp();
+        become_amigo_bot();
+        drive(20, 200);
+        darken(AMIGO_AHEAD);
+        drive(lives != 0 ? 12 : 3, 200);
+        darken(AMIGO_ALL);
+        drive(30, 200);
+        TEST_ASSERT_EQUAL_HEX(lives != 0 ? AMIGO_AHEAD : AMIGO_ALL, convicted());
+    }
+}

@@ -276,3 +276,15 @@ void test_who_is_polled(void) {
     TEST_ASSERT_EQUAL_HEX32(0x00FF, argus_robot_polled(robot));
     TEST_ASSERT_EQUAL_HEX32(0xFF00, argus_robot_polled(argus_robot_other_end(robot)));
 }
+
+// Of an array that looks to both ends those astern do not lead.
+void test_who_leads(void) {
+    const argus_robot_t *const robot = argus_robot_default();
+    const argus_robot_t *const amigo_bot = argus_robot_find("amigo-sh");
+    TEST_ASSERT_EQUAL_HEX32(0x00FF, argus_robot_leading(robot));
+    TEST_ASSERT_EQUAL_HEX32(0x00FF, argus_robot_polled(amigo_bot));
+    TEST_ASSERT_EQUAL_HEX32(0x003F, argus_robot_leading(amigo_bot));
+    if (ARGUS_SONARS > 8) {
+        TEST_ASSERT_EQUAL_HEX32(0xFF00, argus_robot_leading(argus_robot_other_end(robot)));
+    }
+}
