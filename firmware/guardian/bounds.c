@@ -108,8 +108,7 @@ static int32_t remembered_mm(const argus_t *const self, const corridor_t *const 
     int32_t nearest_mm = TRUST_MM;
     for (int i = 0; i < self->echoes.count; i++) {
         argus_point_t at;
-        if (argus_echoes_near(&self->echoes, &from, i, &at) &&
-            argus_abs(at.y_mm) <= way->half_mm) {
+        if (argus_echoes_near(&self->echoes, &from, i, &at) && argus_abs(at.y_mm) <= way->half_mm) {
             const int32_t free_mm = way->rear ? -at.x_mm - robot->rear_mm : at.x_mm - robot->front_mm;
             nearest_mm = free_mm >= 0 ? argus_min(nearest_mm, free_mm) : nearest_mm;
         }

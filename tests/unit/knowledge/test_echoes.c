@@ -313,7 +313,8 @@ void test_what_lies_a_metre_off_is_about_the_robot_no_more(void) {
             argus_point_t at;
             place_echo(&e, &k, axis == 0 ? mm : 0, axis == 0 ? 0 : -mm);
             e.at[0].again = true;
-            TEST_ASSERT_EQUAL(mm < 1000, argus_echoes_beside(&e, &k, 0, &at));
+            const argus_view_t from = argus_view(&k);
+            TEST_ASSERT_EQUAL(mm < 1000, argus_echoes_beside(&e, &from, 0, &at));
         }
     }
 }
