@@ -33,7 +33,8 @@ typedef struct {
 int32_t argus_turn_deg_s(const argus_knowledge_t *const knowledge) {
     ARGUS_ASSERT(knowledge->robot->track_mm > 0);
     const int32_t across_mm_s = knowledge->vel_right_mm_s - knowledge->vel_left_mm_s;
-    return across_mm_s * ARGUS_DEG_PER_RAD / knowledge->robot->track_mm;
+    const int32_t by_wheels = across_mm_s * ARGUS_DEG_PER_RAD / knowledge->robot->track_mm;
+    return argus_abs(knowledge->turn_deg_s) > argus_abs(by_wheels) ? knowledge->turn_deg_s : by_wheels;
 }
 
 static int32_t turn_deg_s(const argus_t *const self) {

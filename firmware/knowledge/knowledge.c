@@ -178,6 +178,13 @@ static bool may_count_anew(const argus_knowledge_t *const self, const argus_sip_
     return argus_odometry_may_be_anew(span, &self->order, moved, &from_zero);
 }
 
+// Those that come in a bunch are a cycle apart nonetheless.
+static int32_t turn_deg_s(const argus_span_t *const span, const int32_t turn_cdeg) {
+    const int32_t cycle_ms = ARCOS_TIMING_SIP_CYCLE_MS;
+    const int32_t ms = span->elapsed_ms > (uint32_t)INT16_MAX ? INT16_MAX : (int32_t)span->elapsed_ms;
+    return turn_cdeg * 10 / argus_max(ms, cycle_ms);
+}
+
 // True: the robot can have moved so, and is known to.
 static bool move(argus_knowledge_t *const self, const argus_sip_t *const sip, const int32_t distance_um,
                  const argus_span_t *const span) {
@@ -196,6 +203,7 @@ static bool move(argus_knowledge_t *const self, const argus_sip_t *const sip, co
     }
     advance_pose(self, dx_um, dy_um);
     self->pose.heading_cdeg = heading;
+    self->turn_deg_s = turn_deg_s(span, moved.turn_cdeg);
     return true;
 }
 
@@ -251,6 +259,7 @@ void argus_knowledge_odometry(argus_knowledge_t *const self, const argus_sip_t *
                               const int32_t distance_um, const uint32_t now_ms) {
     ARGUS_ASSERT(distance_um > 0);
     const argus_span_t span = span_to(self, sip, now_ms);
+    self->turn_deg_s = 0;
     if (!self->has_raw) {
         self->leapt = loses_way(self, &span);
         take_origin(self, sip);

@@ -74,6 +74,7 @@ typedef struct {
     int32_t x_um;                // remainders of the pose, below a mm
     int32_t y_um;
     int32_t odometer_um;
+    int32_t turn_deg_s;    // by the headings of the last two SIPs; 0 after a leap
     uint32_t moved_ms;     // time of the SIP of x_raw, y_raw
     uint32_t late_ms;      // by which SIPs may be late now
     argus_order_t order;   // since then

@@ -206,6 +206,24 @@ void test_a_tight_curve_is_no_slower_than_a_step(void) {
     TEST_ASSERT_EQUAL_INT32(700, bound.speed_mm_s);
 }
 
+// How far apart wheels that skid act is known from the headings alone.
+void test_a_curve_is_as_tight_as_the_headings_say(void) {
+    core->knowledge.vel_left_mm_s = core->knowledge.vel_right_mm_s = 400;
+    core->knowledge.turn_deg_s = 0;
+    read_all(argus_robot_flank(core->knowledge.robot), 900); // no room for a tangent
+    const int32_t straight_mm_s = free_mm_s(true);
+    for (int sign = -1; sign <= 1; sign += 2) {
+        core->knowledge.turn_deg_s = sign * 90;
+        TEST_ASSERT_EQUAL_INT32(sign * 90, argus_turn_deg_s(&core->knowledge));
+        TEST_ASSERT_LESS_THAN_INT32(straight_mm_s, argus_bound_way(core, true).speed_mm_s);
+    }
+    core->knowledge.vel_left_mm_s = 300;
+    core->knowledge.vel_right_mm_s = 500;
+    core->knowledge.turn_deg_s = -5;
+    TEST_ASSERT_EQUAL_INT32(200 * ARGUS_DEG_PER_RAD / core->knowledge.robot->track_mm,
+                            argus_turn_deg_s(&core->knowledge));
+}
+
 // The rules of the paper ask for no echo: behind, as fast as the manager drives.
 void test_back_by_the_rules_of_the_paper_no_echo_is_asked_for(void) {
     for (int paper = 0; paper < 2; paper++) {
