@@ -279,6 +279,7 @@ static unsigned finish_opening(argus_session_t *self, const argus_config_t *conf
     self->stalled = false;
     self->pause_ms = PAUSE_FIRST_MS;
     enter(self, now_ms, ARGUS_SESSION_OPEN);
+    self->copies = (argus_copies_t){.count = 0};
     self->origin_due = false;
     return ARGUS_SESSION_DID_OPEN | other;
 }
@@ -327,6 +328,9 @@ static unsigned on_open_sip(argus_session_t *self, const argus_config_t *config,
                             const argus_packet_t *packet) {
     ARGUS_ASSERT(self->state == ARGUS_SESSION_OPEN && is_sip(packet));
     const uint32_t gap_ms = argus_elapsed_ms(now_ms, self->heard_ms);
+    if (argus_copies_has(&self->copies, packet)) {
+        return ARGUS_SESSION_GOT_COPY;
+    }
     return take_sip(self, now_ms, packet) ? after_gap(self, config, gap_ms) : 0;
 }
 

@@ -5,6 +5,7 @@
 #define ARGUS_SESSION_H
 
 #include "arcos/command.h"
+#include "arcos/copies.h"
 #include "arcos/configpac.h"
 #include "arcos/identity.h"
 #include "arcos/setup.h"
@@ -38,7 +39,8 @@ enum {
     ARGUS_SESSION_NO_ANSWER = 1 << 5,  // one attempt failed
     ARGUS_SESSION_DID_DISLODGE = 1 << 6,
     ARGUS_SESSION_DID_CLOSE = 1 << 7,
-    ARGUS_SESSION_OTHER_ROBOT = 1 << 8 // than in the session before
+    ARGUS_SESSION_OTHER_ROBOT = 1 << 8, // than in the session before
+    ARGUS_SESSION_GOT_COPY = 1 << 9     // a SIP of before came once more, and was passed over
 };
 
 typedef struct {
@@ -64,6 +66,7 @@ typedef struct {
     uint32_t bad_sips;         // right checksum, wrong inside
     argus_identity_t identity; // of the last robot met
     argus_sip_t sip;           // the last one
+    argus_copies_t copies;     // of this session
     argus_outbox_t outbox;
     argus_setup_t setup;       // orders of this session, and what has come of them
     char name[ARGUS_NAME_MAX]; // from the SYNC2 reply

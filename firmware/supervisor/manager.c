@@ -279,8 +279,16 @@ static void on_sip(argus_t *const self) {
         }
         argus_run_mode(self);
     }
+    argus_give_up_in_vain(self); // also while it stands for the link
     note_order(&self->knowledge.order, &self->motion);
     note_watchdog(self, &self->knowledge.order);
+}
+
+// The first one, the second, the fourth and so on: many are one event.
+static void say_copies(argus_t *const self, const uint32_t found) {
+    if ((found & (found - 1)) == 0) {
+        argus_emit(&self->events, ARGUS_EV_SIP_COPIED, (int32_t)(found & 0x7FFFFFFFu));
+    }
 }
 
 static void handle_link(argus_t *const self, const unsigned bits) {
@@ -289,6 +297,9 @@ static void handle_link(argus_t *const self, const unsigned bits) {
     }
     if ((bits & ARGUS_SESSION_DID_DISLODGE) != 0) {
         argus_emit(&self->events, ARGUS_EV_SESSION_DISLODGED, 0);
+    }
+    if ((bits & ARGUS_SESSION_GOT_COPY) != 0) {
+        say_copies(self, self->session.copies.found);
     }
     if ((bits & ARGUS_SESSION_DID_STALL) != 0) {
         on_stall(self);

@@ -632,10 +632,20 @@ void argus_run_mode(argus_t *const self) {
         fail_mission(self, &self->mission, &self->events);
         self->orders.unbegun = true;
     }
-    if (argus_journey_is_hopeless(&self->travel, &self->knowledge, is_under_way(self))) {
-        argus_emit(&self->events, ARGUS_EV_NO_WAY, (int32_t)(self->travel.task.progress.vain_ms / 1000u));
-        argus_stop_and_do(self, ARGUS_STOP_HALT, ARGUS_DO_GIVE_UP, false);
+}
+
+// Where it stands for a late link that is the reason.
+void argus_give_up_in_vain(argus_t *const self) {
+    if (!argus_journey_is_hopeless(&self->travel, &self->knowledge, is_under_way(self))) {
+        return;
     }
+    if (self->latency.stands) {
+        argus_emit(&self->events, ARGUS_EV_LINK_SLOW,
+                   argus_roundtrip_ms(&self->latency.trip, self->now_ms));
+    } else {
+        argus_emit(&self->events, ARGUS_EV_NO_WAY, (int32_t)(self->travel.task.progress.vain_ms / 1000u));
+    }
+    argus_stop_and_do(self, ARGUS_STOP_HALT, ARGUS_DO_GIVE_UP, false);
 }
 
 static void close_when_at_rest(const argus_t *const self, argus_session_t *const session) {

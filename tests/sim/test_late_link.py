@@ -120,6 +120,17 @@ def test_what_was_heard_before_a_gap_shows_no_living_array_behind_it(
     assert not _wrong(outcome), _wrong(outcome)
 
 
+def test_a_mission_whose_link_is_never_in_time_fails_with_the_reason() -> None:
+    """32 readings in each SIP take 160 ms at 9600 baud, and there is one each 100 ms."""
+    mission = Mission(
+        "office", ((2000, 0),), robot="peoplebot-sh", quirks="mobilesim", baud=9600, limit_s=120
+    )
+    outcome = run(mission)
+    names = [event.name for event in outcome.events]
+    assert names[-2:] == ["LINK_SLOW", "MISSION_FAILED"]
+    assert outcome.driven_mm == 0
+
+
 @pytest.mark.wide
 @pytest.mark.parametrize("shape", SHAPES)
 def test_nothing_is_hit_in_many_runs(shape: str) -> None:

@@ -364,7 +364,9 @@ typedef enum {
     X(93, LINK_PROMPT, OK, link, "orders take effect in time again; value: ms from an order until it shows") \
     X(94, LASER_FAULT, ERROR, laser,                                                                         \
       "the scan of the laser as a whole is off; value: 1 frozen, 2 nothing returned, 3 range cut, 4 late, "  \
-      "5 turned about its axis, 6 scaled")
+      "5 turned about its axis, 6 scaled")                                                                   \
+    X(95, SIP_COPIED, WARN, link,                                                                            \
+      "a SIP came a second time, behind newer ones: passed over; value: how many so far")
 
 // Of a guard port.
 #define ARGUS_GUARD_EVENT_TABLE(X)                                                                           \

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+// Keeps what the last SIPs were.
+#include "arcos/copies.h"
+
+#define PLACE_BYTES 7 // the type, x, y, heading
+
+static uint16_t word_at(const uint8_t *const data) {
+    return (uint16_t)(data[0] | data[1] << 8);
+}
+
+static bool is_there(const argus_sip_mark_t *const a, const argus_sip_mark_t *const b) {
+    return a->x == b->x && a->y == b->y && a->heading == b->heading;
+}
+
+static bool is_kept(const argus_copies_t *const self, const argus_sip_mark_t *const mark) {
+    bool kept = false;
+    for (int i = 0; i < self->count; i++) {
+        kept = kept || (self->kept[i].sum == mark->sum && is_there(&self->kept[i], mark));
+    }
+    return kept;
+}
+
+static void keep(argus_copies_t *const self, const argus_sip_mark_t *const mark) {
+    self->last = (uint8_t)((self->last + 1) % ARGUS_COPIES_KEPT);
+    self->kept[self->last] = *mark;
+    self->count = (uint8_t)(self->count < ARGUS_COPIES_KEPT ? self->count + 1 : ARGUS_COPIES_KEPT);
+}
+
+bool argus_copies_has(argus_copies_t *const self, const argus_packet_t *const packet) {
+    if (packet->count < PLACE_BYTES) {
+        return false;
+    }
+    const argus_sip_mark_t mark = {word_at(packet->data + 1), word_at(packet->data + 3),
+                                   word_at(packet->data + 5),
+                                   argus_frame_checksum(packet->data, packet->count)};
+    const bool moved = self->count > 0 && !is_there(&self->kept[self->last], &mark);
+    if (moved && is_kept(self, &mark)) {
+        self->found++;
+        return true;
+    }
+    keep(self, &mark);
+    return false;
+}
