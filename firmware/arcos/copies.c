@@ -3,6 +3,8 @@
 #include "arcos/copies.h"
 
 #define PLACE_BYTES 7 // the type, x, y, heading
+#define STEP_UNITS 40 // a robot that comes back to rest where it was makes smaller steps, of mm
+#define STEP_TURN 57  // ... and turns by less, of 4096
 
 static uint16_t word_at(const uint8_t *const data) {
     return (uint16_t)(data[0] | data[1] << 8);
@@ -10,6 +12,17 @@ static uint16_t word_at(const uint8_t *const data) {
 
 static bool is_there(const argus_sip_mark_t *const a, const argus_sip_mark_t *const b) {
     return a->x == b->x && a->y == b->y && a->heading == b->heading;
+}
+
+static bool is_within(const uint16_t a, const uint16_t b, const int32_t most) {
+    const int32_t off = (int16_t)(uint16_t)(a - b);
+    return off >= -most && off <= most;
+}
+
+// What a robot does in a cycle about where it comes to rest.
+static bool is_step(const argus_sip_mark_t *const a, const argus_sip_mark_t *const b) {
+    return is_within(a->x, b->x, STEP_UNITS) && is_within(a->y, b->y, STEP_UNITS) &&
+           is_within(a->heading, b->heading, STEP_TURN);
 }
 
 static bool is_kept(const argus_copies_t *const self, const argus_sip_mark_t *const mark) {
@@ -33,11 +46,15 @@ bool argus_copies_has(argus_copies_t *const self, const argus_packet_t *const pa
     const argus_sip_mark_t mark = {word_at(packet->data + 1), word_at(packet->data + 3),
                                    word_at(packet->data + 5),
                                    argus_frame_checksum(packet->data, packet->count)};
-    const bool moved = self->count > 0 && !is_there(&self->kept[self->last], &mark);
-    if (moved && is_kept(self, &mark)) {
+    const bool moved = self->count > 0 && !is_step(&self->kept[self->last], &mark);
+    const bool again = self->passing && is_there(&self->passed, &mark); // it is there indeed
+    if (moved && !again && is_kept(self, &mark)) {
         self->found++;
+        self->passing = true;
+        self->passed = mark;
         return true;
     }
+    self->passing = false;
     keep(self, &mark);
     return false;
 }

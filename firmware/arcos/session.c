@@ -329,6 +329,7 @@ static unsigned on_open_sip(argus_session_t *self, const argus_config_t *config,
     ARGUS_ASSERT(self->state == ARGUS_SESSION_OPEN && is_sip(packet));
     const uint32_t gap_ms = argus_elapsed_ms(now_ms, self->heard_ms);
     if (argus_copies_has(&self->copies, packet)) {
+        self->sips++;
         return ARGUS_SESSION_GOT_COPY;
     }
     return take_sip(self, now_ms, packet) ? after_gap(self, config, gap_ms) : 0;

@@ -5,8 +5,8 @@
 #define ARGUS_SESSION_H
 
 #include "arcos/command.h"
-#include "arcos/copies.h"
 #include "arcos/configpac.h"
+#include "arcos/copies.h"
 #include "arcos/identity.h"
 #include "arcos/setup.h"
 #include "arcos/sip.h"

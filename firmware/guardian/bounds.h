@@ -31,8 +31,8 @@ typedef struct {
 // where a bearing ahead is blind that of argus_rays_seen_mm().
 argus_bound_t argus_bound_way(const argus_t *self, bool ahead);
 
-// How fast it turns by its wheels or, where that is faster, by its headings: how far apart wheels that skid act
-// is known from these alone. Counter-clockwise positive.
+// How fast it turns by its wheels or, where that is faster, by its headings: how far apart wheels that skid
+// act is known from these alone. Counter-clockwise positive.
 int32_t argus_turn_deg_s(const argus_knowledge_t *knowledge);
 
 // What bounds a client where it may not move at all, or not turn.

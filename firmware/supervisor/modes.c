@@ -640,8 +640,7 @@ void argus_give_up_in_vain(argus_t *const self) {
         return;
     }
     if (self->latency.stands) {
-        argus_emit(&self->events, ARGUS_EV_LINK_SLOW,
-                   argus_roundtrip_ms(&self->latency.trip, self->now_ms));
+        argus_emit(&self->events, ARGUS_EV_LINK_SLOW, argus_roundtrip_ms(&self->latency.trip, self->now_ms));
     } else {
         argus_emit(&self->events, ARGUS_EV_NO_WAY, (int32_t)(self->travel.task.progress.vain_ms / 1000u));
     }

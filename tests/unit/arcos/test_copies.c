@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Rule under attack: a SIP that a link delivers again, behind newer ones, is told from one of now; no other is.
+// Rule under attack: a SIP that a link delivers again, behind newer ones, is told from one of now; no other
+// is.
 #include "arcos/copies.h"
 
 #include <string.h>
@@ -34,10 +35,10 @@ static bool has_at(int x, int reading) {
 void test_what_comes_again_behind_newer_ones_is_a_copy(void) {
     uint32_t sent = 0;
     for (int i = 0; i < 300; i++) {
-        TEST_ASSERT_FALSE(has_at(i * 20, 2000 - i));
+        TEST_ASSERT_FALSE(has_at(i * 50, 2000 - i));
         const int back = 1 + i % (ARGUS_COPIES_KEPT - 1);
         if (i >= back) {
-            TEST_ASSERT_TRUE(has_at((i - back) * 20, 2000 - i + back));
+            TEST_ASSERT_TRUE(has_at((i - back) * 50, 2000 - i + back));
             sent++;
         }
     }
@@ -46,12 +47,12 @@ void test_what_comes_again_behind_newer_ones_is_a_copy(void) {
 
 void test_a_burst_of_old_ones_is_told_whole(void) {
     for (int i = 0; i < ARGUS_COPIES_KEPT; i++) {
-        TEST_ASSERT_FALSE(has_at(i, 0));
+        TEST_ASSERT_FALSE(has_at(i * 50, 0));
     }
     for (int i = 0; i < ARGUS_COPIES_KEPT - 1; i++) {
-        TEST_ASSERT_TRUE(has_at(i, 0));
+        TEST_ASSERT_TRUE(has_at(i * 50, 0));
     }
-    TEST_ASSERT_FALSE(has_at(ARGUS_COPIES_KEPT, 0));
+    TEST_ASSERT_FALSE(has_at(ARGUS_COPIES_KEPT * 50, 0));
 }
 
 void test_at_rest_all_are_alike_and_none_is_a_copy(void) {
@@ -64,14 +65,32 @@ void test_at_rest_all_are_alike_and_none_is_a_copy(void) {
 // The same place again is none: what is read there is of now.
 void test_one_that_comes_back_is_there(void) {
     for (int i = 0; i < 100; i++) {
-        TEST_ASSERT_FALSE(has_at(i % 2 * 10, i));
+        TEST_ASSERT_FALSE(has_at(i % 2 * 100, i));
+    }
+}
+
+// Where nothing is noisy a robot that comes back to rest says the same as before.
+void test_one_that_comes_back_to_rest_says_the_same(void) {
+    for (int i = 0; i < 100; i++) {
+        TEST_ASSERT_FALSE(has_at(i / 2 % 2 * 40, 0));
+    }
+}
+
+// An emulator may put the robot back to where it began, and all is as it was.
+void test_one_that_is_put_back_is_there_with_the_next(void) {
+    for (int i = 0; i < 10; i++) {
+        TEST_ASSERT_FALSE(has_at(i * 50, 0));
+    }
+    TEST_ASSERT_TRUE(has_at(0, 0));
+    for (int i = 0; i < 100; i++) {
+        TEST_ASSERT_FALSE(has_at(0, 0));
     }
 }
 
 void test_one_that_is_older_than_those_kept_is_not_known(void) {
     TEST_ASSERT_FALSE(has_at(1, 0));
     for (int i = 0; i < ARGUS_COPIES_KEPT; i++) {
-        TEST_ASSERT_FALSE(has_at(100 + i, 0));
+        TEST_ASSERT_FALSE(has_at(100 + 50 * i, 0));
     }
     TEST_ASSERT_FALSE(has_at(1, 0));
 }
