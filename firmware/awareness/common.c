@@ -288,10 +288,13 @@ static void begin(const argus_common_t *const self, const argus_evidence_t *cons
     dark->tells = tells_at_once(self, evidence, knowledge, sonars);
 }
 
-// The end ahead was dark alone, and now what looks astern is as well: the whole goes on from here.
-static bool widens(const argus_knowledge_t *const knowledge, const argus_dark_t *const dark,
-                   const argus_mask_t in_use, const argus_mask_t sonars) {
-    return dark->sonars == leading_of(knowledge, in_use) && sonars == in_use && dark->sonars != in_use;
+// It was dark before, and not the end ahead alone where what looks astern now is as well: from there on the
+// whole counts.
+static bool was_dark(const argus_knowledge_t *const knowledge, const argus_dark_t *const dark,
+                     const argus_mask_t in_use, const argus_mask_t sonars) {
+    const bool widens =
+        dark->sonars == leading_of(knowledge, in_use) && sonars == in_use && dark->sonars != in_use;
+    return dark->sonars != 0 && !widens;
 }
 
 static void look_at(argus_common_t *const self, const argus_evidence_t *const evidence,
@@ -305,20 +308,20 @@ static void look_at(argus_common_t *const self, const argus_evidence_t *const ev
     const bool whole = sonars == parts;
     const int least = whole ? ARGUS_DARK_LEAST : ARGUS_DARK_LEAST_OF_SOME;
     const int run = argus_count_bits(sonars) >= least ? least_run(self, sonars) : 0;
-    const bool was_dark = dark->sonars != 0 && !widens(knowledge, dark, in_use, sonars);
+    const bool before = was_dark(knowledge, dark, in_use, sonars);
     const bool at_once =
-        was_dark ? dark->at_once : argus_count_bits(lost_at_once(self, knowledge, sonars)) >= least;
+        before ? dark->at_once : argus_count_bits(lost_at_once(self, knowledge, sonars)) >= least;
     if (run == 0 || (!whole && !at_once)) {
         *dark = (argus_dark_t){.sonars = 0};
         return;
     }
-    if (!was_dark) {
+    if (!before) {
         begin(self, evidence, knowledge, dark, sonars);
     }
     dark->sonars = sonars;
     dark->at_once = at_once;
     count_lost(self, evidence, knowledge, dark);
-    dark->news = (!was_dark && at_once) || comes_to_doubt(dark, run);
+    dark->news = (!before && at_once) || comes_to_doubt(dark, run);
     pass_all(dark, evidence, knowledge);
     const int hear = argus_count_bits(parts) - argus_count_bits(sonars);
     dark->proven |= is_proven(dark, knowledge, run, hear);
