@@ -771,7 +771,7 @@ typedef struct {
 // Instance -------------------------------------------------------------------------------------------------
 
 // Bytes of one manager.
-#define ARGUS_STORAGE_BYTES (14000 + 812 * ARGUS_SONARS + (ARGUS_SONARS > 16 ? 4000 : 0))
+#define ARGUS_STORAGE_BYTES (14300 + 812 * ARGUS_SONARS + (ARGUS_SONARS > 16 ? 4000 : 0))
 
 // Memory of one manager, the caller's: static, on a stack that is large enough, or part of something else.
 // Its contents are the library's own.
