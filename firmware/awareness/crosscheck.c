@@ -167,6 +167,41 @@ static verdict_t verdict_of(const tally_t *const tally) {
     return tally->quiet > 0 ? QUIET : UNSEEN;
 }
 
+static int take_sonar(argus_mask_t *const left) {
+    ARGUS_ASSERT(*left != 0);
+    const int sonar = 31 - argus_leading_zeros(*left);
+    *left &= (argus_mask_t) ~(1u << sonar);
+    return sonar;
+}
+
+// Of those that contradict an echo by their silence: whether each has told so since it heard something last.
+static bool have_told(const argus_evidence_t *const self, const int sonar, argus_mask_t left) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    bool have = true;
+    while (left != 0 && have) {
+        have = (self->told[take_sonar(&left)] >> sonar & 1u) != 0;
+    }
+    return have;
+}
+
+// A silence that goes on is one piece of evidence against an echo, however often it is asked: it may be of
+// one that is deaf to a surface, or dead.
+static verdict_t unless_told(const argus_evidence_t *const self, const int sonar,
+                             const tally_t *const tally) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    const verdict_t verdict = verdict_of(tally);
+    return verdict == CONTRADICTED && !tally->heard && have_told(self, sonar, tally->against) ? DIVIDED
+                                                                                              : verdict;
+}
+
+// They have told now, by their silence alone.
+static void tell(argus_evidence_t *const self, const int sonar, argus_mask_t left) {
+    ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    while (left != 0) {
+        self->told[take_sonar(&left)] |= (argus_mask_t)(1u << sonar);
+    }
+}
+
 // From one place and on one bearing, one reading counts.
 static bool is_news(const argus_pings_t *const pings, const argus_ping_t *const now, const int32_t place_mm) {
     for (int i = 1; i <= pings->count; i++) {
@@ -193,8 +228,9 @@ static int32_t deafness_of(const argus_evidence_t *const self, const int sonar, 
         return argus_odds_deaf_permille(self, sonar);
     }
     int32_t least = tally->heard ? 0 : 1000;
-    for (int i = 0; i < ARGUS_SONARS && least > 0; i++) {
-        least = (tally->against >> i & 1u) != 0 ? argus_min(least, argus_odds_deaf_permille(self, i)) : least;
+    argus_mask_t left = tally->against;
+    while (left != 0 && least > 0) {
+        least = argus_min(least, argus_odds_deaf_permille(self, take_sonar(&left)));
     }
     return least;
 }
@@ -380,10 +416,12 @@ static void count_own(argus_evidence_t *const self, const argus_knowledge_t *con
 // The axis first: which sonar is a witness depends on what is counted.
 static void count_news(argus_evidence_t *const self, const argus_knowledge_t *const knowledge,
                        const int sonar, argus_ping_t *const at, const verdict_t verdict,
-                       const argus_mask_t against, const int32_t worth) {
+                       const tally_t *const tally, const int32_t worth) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
+    const argus_mask_t against = verdict == CONTRADICTED ? tally->against : (argus_mask_t)0;
     weigh_offsets(self, knowledge, sonar, at, verdict, worth);
-    count(self, knowledge, sonar, at, verdict == CONTRADICTED ? against : 0, worth);
+    tell(self, sonar, tally->heard ? (argus_mask_t)0 : against);
+    count(self, knowledge, sonar, at, against, worth);
     at->counted = 1;
 }
 
@@ -416,7 +454,7 @@ static void weigh(argus_evidence_t *const self, const argus_knowledge_t *const k
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     ARGUS_ASSERT(back >= 1);
     argus_ping_t *const at = argus_pings_mark(&self->pings[sonar], back);
-    const verdict_t verdict = verdict_of(tally);
+    const verdict_t verdict = unless_told(self, sonar, tally);
     at->weighed = verdict != UNSEEN;
     count_own(self, knowledge, sonar, back, verdict);
     const bool tells = verdict == AGREED || verdict == CONTRADICTED;
@@ -424,7 +462,7 @@ static void weigh(argus_evidence_t *const self, const argus_knowledge_t *const k
     const bool weighs = news || verdict == CONTRADICTED;
     const int32_t worth = weighs ? worth_as(self, knowledge, sonar, at, tally, verdict) : 0;
     if (news) {
-        count_news(self, knowledge, sonar, at, verdict, tally->against, worth);
+        count_news(self, knowledge, sonar, at, verdict, tally, worth);
     }
     if (fresh) {
         bear_out(&self->of[sonar], verdict);
@@ -491,6 +529,7 @@ void argus_crosscheck_take(argus_evidence_t *const self, const argus_knowledge_t
         }
     }
     ask_laser(knowledge, sonar, now, &tally);
+    self->told[sonar] = argus_ping_is_echo(now) ? (argus_mask_t)0 : self->told[sonar];
     weigh(self, knowledge, sonar, 1, &tally, true);
     look_back(self, knowledge, sonar, latest);
 }

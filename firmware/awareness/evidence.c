@@ -77,10 +77,12 @@ void argus_evidence_forget(argus_evidence_t *const self, const int sonar) {
     memset(&self->of[sonar], 0, sizeof self->of[sonar]);
     self->deaf[sonar] = (argus_rate_t){.all = 0};
     self->deaf_waits[sonar] = 0;
+    self->told[sonar] = 0;
     memset(&self->pings[sonar], 0, sizeof self->pings[sonar]);
     forget_laser(self, sonar);
     for (int i = 0; i < ARGUS_SONARS; i++) {
         self->of[i].against &= (argus_mask_t) ~(1u << sonar);
+        self->told[i] &= (argus_mask_t) ~(1u << sonar);
     }
 }
 

@@ -91,7 +91,8 @@ typedef struct {
     argus_rate_t deaf[ARGUS_SONARS];  // where another heard something: all, and those at which it was silent
     argus_rate_t deaf_ring;           // ... of all sonars together
     uint8_t deaf_waits[ARGUS_SONARS]; // its silences since an echo of it was borne out last: it may be dead
-    argus_mask_t off_scale;           // ranges do not change as the way does: no witnesses
+    argus_mask_t told[ARGUS_SONARS]; // those whose echoes its silence has contradicted, as long as it goes on
+    argus_mask_t off_scale;          // ranges do not change as the way does: no witnesses
     argus_pings_t pings[ARGUS_SONARS];
 #if ARGUS_LASER
     argus_laser_t laser;

@@ -111,10 +111,11 @@ void argus_odds_note_deaf(argus_evidence_t *const self, const int sonar, const b
 }
 
 int32_t argus_odds_deaf_permille(const argus_evidence_t *const self, const int sonar) {
-    const int32_t earlier = ARGUS_DEAF_EARLIER * ARGUS_RATE_ONE;
     const argus_rate_t *const ring = &self->deaf_ring;
     const argus_rate_t *const own = &self->deaf[sonar];
-    const int32_t usual = (ring->odd + ARGUS_RATE_ONE) * 1000 / (ring->all + earlier);
+    const int32_t usual =
+        (ring->odd + ARGUS_RATE_ONE) * 1000 / (ring->all + ARGUS_DEAF_EARLIER * ARGUS_RATE_ONE);
+    const int32_t earlier = ARGUS_DEAF_EARLIER_OWN * ARGUS_RATE_ONE;
     return (own->odd * 1000 + usual * earlier) / (own->all + earlier);
 }
 

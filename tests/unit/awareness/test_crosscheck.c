@@ -236,19 +236,24 @@ void test_what_is_read_is_judged_by_who_looks_there_later(void) {
     }
 }
 
-static int again(uint32_t after_ms, int dx_mm, int32_t turn_cdeg) {
-    setUp();
-    heard(WITNESS, 3000);
-    TEST_ASSERT_TRUE(reads(1000) > 0);
+// What a reading adds after the same from there: so much later, farther and turned. `by` reads so as well.
+static int goes_on(int by, int their_mm, int mm, uint32_t after_ms, int dx_mm, int32_t turn_cdeg) {
     k.sip_ms += after_ms;
     argus_ping_t at = here(ME);
     at.x_mm = (uint16_t)(at.x_mm + dx_mm);
     at.bearing_cdeg = (int16_t)argus_angle_wrap(at.bearing_cdeg + turn_cdeg);
     argus_ping_t theirs = at;
-    theirs.reading_mm = 3000;
+    theirs.reading_mm = (uint16_t)their_mm;
     theirs.weighed = 1;
-    argus_pings_note(&e.pings[WITNESS], theirs);
-    return takes(ME, at, 1000);
+    argus_pings_note(&e.pings[by], theirs);
+    return takes(ME, at, mm);
+}
+
+static int again(uint32_t after_ms, int dx_mm, int32_t turn_cdeg) {
+    setUp();
+    heard(WITNESS, 3000);
+    TEST_ASSERT_TRUE(reads(1000) > 0);
+    return goes_on(WITNESS, 3000, 1000, after_ms, dx_mm, turn_cdeg);
 }
 
 // From one place on one bearing one reading counts in 4 s; elsewhere, elsewhither or later the next one.
@@ -259,6 +264,29 @@ void test_one_place_and_bearing_counts_once_in_a_while(void) {
     TEST_ASSERT_TRUE(again(300, ARGUS_PLACE_MM + 50, 0) > 0);
     TEST_ASSERT_TRUE(again(300, 10, 1000) > 0);
     TEST_ASSERT_TRUE(again(ARGUS_PLACE_MS + 100, 50, 0) > 0);
+}
+
+// An echo where another is silent counts once for each silence: that goes on until the other hears something.
+void test_a_silence_that_goes_on_counts_once_against_an_echo(void) {
+    const uint32_t later_ms = ARGUS_PLACE_MS + 100;
+    heard(WITNESS, NONE_MM);
+    TEST_ASSERT_TRUE(reads(1000) > 0);
+    TEST_ASSERT_EQUAL(0, goes_on(WITNESS, NONE_MM, 1000, later_ms, 300, 0));
+    takes(THIRD, here(THIRD), 2000);
+    TEST_ASSERT_EQUAL(0, goes_on(WITNESS, NONE_MM, 1000, later_ms, 600, 0));
+    TEST_ASSERT_TRUE(goes_on(THIRD, NONE_MM, 1000, later_ms, 600, 0) > 0);
+    takes(WITNESS, here(WITNESS), 2000);
+    TEST_ASSERT_TRUE(goes_on(WITNESS, NONE_MM, 1000, later_ms, 900, 0) > 0);
+}
+
+// ... and neither another's echo nor one's own silence is told so.
+void test_only_silence_against_an_echo_is_told(void) {
+    const uint32_t later_ms = ARGUS_PLACE_MS + 100;
+    heard(WITNESS, 3000);
+    TEST_ASSERT_TRUE(reads(1000) > 0);
+    TEST_ASSERT_TRUE(goes_on(WITNESS, 3000, 1000, later_ms, 300, 0) > 0);
+    TEST_ASSERT_TRUE(goes_on(WITNESS, NONE_MM, 1000, later_ms, 600, 0) > 0);
+    TEST_ASSERT_TRUE(goes_on(WITNESS, 3000, NONE_MM, later_ms, 900, 0) > 0);
 }
 
 // ---- how much

@@ -120,6 +120,18 @@ void test_the_deafer_a_sonar_the_less_its_silence_says(void) {
     TEST_ASSERT_EQUAL(before, argus_odds_deaf_permille(&e, ME));
 }
 
+// Sonars differ: a dozen readings of its own outweigh those of all others.
+void test_its_own_readings_outweigh_those_of_the_ring(void) {
+    for (int i = 0; i < 400; i++) {
+        argus_odds_note_deaf(&e, 5, i % 10 == 0);
+    }
+    TEST_ASSERT_TRUE(argus_odds_deaf_permille(&e, ME) < 130);
+    for (int i = 0; i < 12; i++) {
+        argus_odds_note_deaf(&e, ME, i % 2 == 0);
+    }
+    TEST_ASSERT_TRUE(argus_odds_deaf_permille(&e, ME) > 380);
+}
+
 // What is known of it fades, and an hour of silences cannot overflow it.
 void test_deafness_fades_and_does_not_overflow(void) {
     for (int i = 0; i < 20000; i++) {
