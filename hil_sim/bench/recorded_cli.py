@@ -30,9 +30,10 @@ examples:
   argus-sim bench recorded --bags drives --seeds 1-2
   argus-sim bench recorded --bags drives --kinds free,off --json recorded.json
 
-Real odometry and a real laser: bags of ROS 1 and 2, MCAP files and logs of CARMEN (FLASER) in DIR and below. Sonars of
-a P3-DX are cast into each scan; noise, silence and short echoes are drawn as physics = recorded has them, some things
-stand below the laser's plane, and faults are put in. The fault manager only listens. docs/diagnosis.md has the rules.
+Real odometry and a real laser: bags of ROS 1 and 2, MCAP files, logs of CARMEN (FLASER), tables and JSON lines (.csv,
+.tsv, .jsonl) with columns for time, pose and 33 beams or more, in DIR and below. Sonars of a P3-DX are cast into each
+scan; noise, silence and short echoes are drawn as physics = recorded has them, some things stand below the laser's
+plane, and faults are put in. The fault manager only listens. docs/diagnosis.md has the rules.
 
 exit codes: 0 done, or skipped as no DIR is given; 1 a recording holds no drive, 2 wrong argument, 130 interrupted
 """

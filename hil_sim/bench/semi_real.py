@@ -33,6 +33,7 @@ from hil_sim.tables.robot import RobotTable, robot_table
 from hil_sim.world.model import Floats, Pose, World
 from hil_sim.world.physics import SETS
 
+_FORMS: Final = (".bag", ".mcap", ".log", ".clf", ".csv", ".tsv", ".jsonl")
 READER: Final = ("-m", "argus_tools.rings.drives")
 """Reads the forms that argus-log reads; in a process of its own, since the tools rest on the emulator."""
 STEP_MS: Final = 100
@@ -124,14 +125,14 @@ def read_drive(path: Path, most_s: float) -> Drive:
 
 
 def drive_files(folder: Path) -> list[Path]:
-    """Return what may be recordings in a folder: bags, MCAP files, logs, and bags of ROS 2, which are folders."""
+    """Return what may be recordings in a folder: files, and bags of ROS 2, which are folders."""
     if not folder.is_dir():
         raise SimError(f"{folder}: no such folder; --bags takes one with recordings")
     bags = sorted({path.parent for path in folder.rglob("metadata.yaml")})
     files = [
         path
         for path in sorted(folder.rglob("*"))
-        if path.suffix in (".bag", ".mcap", ".log", ".clf") and path.is_file() and path.parent not in bags
+        if path.suffix in _FORMS and path.is_file() and path.parent not in bags
     ]
     return [*bags, *files]
 

@@ -42,18 +42,31 @@ def carmen(path: Path, drive: Drive = DRIVE) -> Path:
     return path
 
 
+def table(path: Path, drive: Drive = DRIVE, beams: int = 181) -> Path:
+    """A table with a column for each beam of half a turn, in m; some cells are empty, one row is cut."""
+    lines = ["t_s,x_m,y_m,heading_rad," + ",".join(f"range_{k}_m" for k in range(beams))]
+    for t, place, heading, _ in drive.steps:
+        scan = bags.scan(t, place, heading).fields["ranges"][30 : 30 + beams]
+        ranges = ",".join("" if far > 81.0 else f"{far:.3f}" for far in scan)
+        pose = f"{place[0] / 1000:.4f},{place[1] / 1000:.4f},{heading:.5f}"
+        lines.append(f"{t - bags.START:.3f},{pose},{ranges}")
+    path.write_text("\n".join([*lines, "1.0,2.0"]) + "\n", encoding="utf-8")
+    return path
+
+
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     made = tmp_path_factory.mktemp("drives")
     bags.write(made / "wall.bag", sent())
     bags.write(made / "second", sent(), "sqlite3")
     carmen(made / "third.log")
+    table(made / "fourth.csv")
     return made
 
 
 def test_each_form_is_found_and_reads_alike(folder: Path) -> None:
     files = drive_files(folder)
-    assert [path.name for path in files] == ["second", "third.log", "wall.bag"]
+    assert [path.name for path in files] == ["second", "fourth.csv", "third.log", "wall.bag"]
     drives = [read_drive(path, 300.0) for path in files]
     for drive in drives:
         assert len(drive.sweeps) == pytest.approx(len(DRIVE.steps), abs=1)
@@ -62,9 +75,10 @@ def test_each_form_is_found_and_reads_alike(folder: Path) -> None:
         ys = drive.sweeps[50].returns[:, 1]
         assert ys.min() == pytest.approx(low, abs=30)
         assert ys.max() == pytest.approx(high, abs=30)
-    table = robot_table()
-    assert set(drives[1].covered(table)) == {*range(8)} | {8, 15}
-    assert set(drives[2].covered(table)) == {*range(8)} | {8, 15, 9, 14} - {9, 14}
+    robot = robot_table()
+    assert set(drives[2].covered(robot)) == {*range(8)} | {8, 15}
+    assert drives[1].covered(robot) == drives[2].covered(robot)
+    assert set(drives[3].covered(robot)) == {*range(8)} | {8, 15, 9, 14} - {9, 14}
 
 
 def test_the_longest_stretch_without_a_gap_is_the_drive(tmp_path: Path) -> None:
@@ -87,6 +101,33 @@ def test_what_holds_no_drive_is_named(tmp_path: Path) -> None:
         read_drive(text, 300.0)
     with pytest.raises(SimError, match="no such folder"):
         drive_files(tmp_path / "missing")
+
+
+def test_bearings_of_a_table_are_as_it_says_and_sonars_are_no_laser(tmp_path: Path) -> None:
+    rows = [
+        {
+            "t": k,
+            "x": k / 10,
+            "y": 0,
+            "heading": 0,
+            "angle_min": -1.0,
+            "angle_increment": 0.05,
+            "ranges": [2.0] * 40,
+        }
+        for k in range(5)
+    ]
+    file = tmp_path / "scans.jsonl"
+    file.write_text("\n".join(map(json.dumps, rows)), encoding="utf-8")
+    lines = list(lines_of(file))
+    assert [line["angles"] for line in lines] == [[-1.0, 0.05]] * 5
+    assert lines[4]["x"] == pytest.approx(0.4)
+    assert lines[4]["mm"] == [2000] * 40
+    with pytest.raises(SimError, match="16 ranges a row are of sonars"):
+        read_drive(table(tmp_path / "ring.csv", beams=16), 300.0)
+    words = tmp_path / "words.csv"
+    words.write_text("name,value\na,1\n", encoding="utf-8")
+    with pytest.raises(SimError, match="no columns of time, pose and ranges"):
+        read_drive(words, 300.0)
 
 
 def test_a_fault_is_found_and_the_healthy_are_left_alone(folder: Path) -> None:
@@ -156,8 +197,8 @@ def test_the_bench_over_a_folder(folder: Path, tmp_path: Path, capsys: pytest.Ca
         str(out),
     ]
     assert main(words) == 0
-    assert "3 recorded drives" in capsys.readouterr().out
+    assert "4 recorded drives" in capsys.readouterr().out
     figures = json.loads(out.read_text(encoding="utf-8"))
-    assert figures["drives"] == 3
-    assert figures["streams"] == 3
+    assert figures["drives"] == 4
+    assert figures["streams"] == 4
     assert main(["bench", "recorded", "--bags", str(tmp_path)]) == 2

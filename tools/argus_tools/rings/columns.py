@@ -197,7 +197,7 @@ class ColumnsLog:
                 f"{self._options.name}: a range of sonar {max(columns.ranges)}, but {self._table.subclass} has "
                 f"{self._table.sonars} sonars; --subclass names another robot"
             )
-        reader = _Reading(columns, head, self._table.motion["track_mm"])
+        reader = Reading(columns, head, self._table.motion["track_mm"])
         silence = Silence(self._table.no_echo_mm, self._table.min_mm)
         present = set()
         for _, row in head:
@@ -216,7 +216,7 @@ class ColumnsLog:
             )
         yield from self._chunks(chain(head, self._rows), reader, silence)
 
-    def _chunks(self, rows: Iterator[Row], reader: _Reading, silence: Silence) -> Iterator[Chunk]:
+    def _chunks(self, rows: Iterator[Row], reader: Reading, silence: Silence) -> Iterator[Chunk]:
         offsets, last, motion = Offsets(), -math.inf, Motion()
         discarded: Counter[str] = Counter()
         pacer = Pacer(self._table, True, lambda _: motion)
@@ -249,7 +249,7 @@ class ColumnsLog:
             self._options.tell(f"discarded: {count} x {what}")
 
 
-def _items(rows: Iterator[Row], reader: _Reading) -> Iterator[Item[dict[str, Any]]]:
+def _items(rows: Iterator[Row], reader: Reading) -> Iterator[Item[dict[str, Any]]]:
     """Yield rows with their times, each in place of the packet that it becomes."""
     for number, row in rows:
         t = reader.time(row)
@@ -257,7 +257,7 @@ def _items(rows: Iterator[Row], reader: _Reading) -> Iterator[Item[dict[str, Any
             yield Item(t, bytes(SIP_BYTES), f"line {number}", row)
 
 
-class _Reading:
+class Reading:
     """Rows as numbers in s, m and rad; units that no name tells are seen from the data."""
 
     def __init__(self, columns: Columns, head: list[Row], track_mm: float) -> None:
