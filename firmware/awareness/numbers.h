@@ -56,7 +56,7 @@
     X(RATE_KEEPS_EIGHTHS, 7, "/8", reasoned, "of a rate is kept each second", "not ablated") \
     X(RATE_EARLIER, 6, "readings", reasoned, "are taken for granted at the start of a rate", "not ablated") \
     X(DEAF_EARLIER, 12, "readings", reasoned, "heard as others did, but one, are taken for granted of the ring", "not ablated") \
-    X(DEAF_EARLIER_OWN, 4, "readings", measured, "of each sonar, that hears as often as the ring, are taken for granted", "12: a fifth more false names of sonars as recorded, as many faults found") \
+    X(DEAF_EARLIER_OWN, 4, "readings", measured, "of each sonar, that hears as often as the ring, are taken for granted", "12: a tenth more false names of sonars as recorded, as many faults found") \
     X(DEAF_FADES_S, 120, "s", reasoned, "in which it fades how often a sonar was silent where another heard something", "not ablated") \
     X(RATE_OUTLIERS, 2, "sonars", reasoned, "that are odd by themselves: what more have in common is a disturbance", "not ablated") \
     X(ASKED_MOST, 104, "hypotheses", measured, "that one SIP weighs, some 3,000 instructions each", "110: as many instructions at worst")
