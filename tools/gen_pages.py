@@ -31,6 +31,7 @@ REMEDIES: Final = {
     "EVENTS_LOST": "Read events faster; the robot was not delayed.",
     "INVARIANT": "A defect of Argus: please report it with the recording.",
     "LINK_SLOW": "Take what delays the link out of it: a radio modem, a busy host (`--realtime`).",
+    "SIP_COPIED": "Nothing, if it is rare; else take out what repeats bytes: a serial server, a relay.",
     "GUARD_LOST": "Start the client again.",
 }
 """What a person does, for what a person can change."""

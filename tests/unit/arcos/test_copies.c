@@ -87,6 +87,16 @@ void test_one_that_is_put_back_is_there_with_the_next(void) {
     }
 }
 
+// Another heading is another place, also right after a copy.
+void test_one_that_is_put_back_and_turned_is_of_now(void) {
+    for (int i = 0; i < 10; i++) {
+        TEST_ASSERT_FALSE(has_at(i * 50, 0));
+    }
+    TEST_ASSERT_TRUE(has_at(0, 0));
+    data[6] = 4; // 1024 of 4096: a quarter of a turn
+    TEST_ASSERT_FALSE(has_at(0, 0));
+}
+
 void test_one_that_is_older_than_those_kept_is_not_known(void) {
     TEST_ASSERT_FALSE(has_at(1, 0));
     for (int i = 0; i < ARGUS_COPIES_KEPT; i++) {

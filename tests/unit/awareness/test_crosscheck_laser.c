@@ -195,3 +195,10 @@ void test_a_sector_is_contradicted_in_its_silence_alone(void) {
         TEST_ASSERT_EQUAL(i == 0, e.of[FIRST].score[ARGUS_TEST_PEERS] > 0);
     }
 }
+
+// A sector bears a sonar out as a whole scan does, never as one of the ring, and no sonar a sector.
+void test_sonars_and_sectors_are_no_witnesses_of_each_other(void) {
+    TEST_ASSERT_FALSE(argus_crosscheck_is_witness(&e, &k, FIRST, ME));
+    TEST_ASSERT_FALSE(argus_crosscheck_is_witness(&e, &k, ME, FIRST));
+    TEST_ASSERT_TRUE(argus_crosscheck_is_witness(&e, &k, FIRST, MIDDLE));
+}

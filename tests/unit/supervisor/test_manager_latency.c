@@ -69,3 +69,17 @@ void test_a_delay_that_pulses_stays(void) {
     TEST_ASSERT_EQUAL_INT(0, robot_count_events(&robot, ARGUS_EV_LINK_PROMPT, 0));
     TEST_ASSERT_TRUE(robot.argus.latency.late_ms > 100);
 }
+
+// What stands for the link does not stand for ever, and the reason is the link.
+void test_a_course_that_stands_for_the_link_is_given_up(void) {
+    TEST_ASSERT_TRUE(robot_goal(&robot, 3000, 0));
+    TEST_ASSERT_TRUE(robot_until_mode(&robot, ARGUS_MODE_DRIVING, 5000));
+    robot_run(&robot, 1500);
+    delay(80000);
+    TEST_ASSERT_EQUAL_INT(ARGUS_MISSION_RUNNING, robot.argus.mission);
+    const int before = robot.events;
+    delay(20000);
+    TEST_ASSERT_EQUAL_INT(ARGUS_MISSION_FAILED, robot.argus.mission);
+    TEST_ASSERT_TRUE(robot_count_events(&robot, ARGUS_EV_LINK_SLOW, before) > 0);
+    TEST_ASSERT_EQUAL_INT(0, robot_count_events(&robot, ARGUS_EV_NO_WAY, 0));
+}
