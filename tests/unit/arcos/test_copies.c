@@ -87,14 +87,18 @@ void test_one_that_is_put_back_is_there_with_the_next(void) {
     }
 }
 
-// Another heading is another place, also right after a copy.
-void test_one_that_is_put_back_and_turned_is_of_now(void) {
-    for (int i = 0; i < 10; i++) {
-        TEST_ASSERT_FALSE(has_at(i * 50, 0));
+// Beside it, or with another heading, is another place, also right after a copy.
+void test_one_that_is_put_back_and_moved_is_of_now(void) {
+    static const int high_bytes[] = {4, 6}; // of y, of the heading
+    for (size_t k = 0; k < sizeof high_bytes / sizeof high_bytes[0]; k++) {
+        setUp();
+        for (int i = 0; i < 10; i++) {
+            TEST_ASSERT_FALSE(has_at(i * 50, 0));
+        }
+        TEST_ASSERT_TRUE(has_at(0, 0));
+        data[high_bytes[k]] = 4;
+        TEST_ASSERT_FALSE(has_at(0, 0));
     }
-    TEST_ASSERT_TRUE(has_at(0, 0));
-    data[6] = 4; // 1024 of 4096: a quarter of a turn
-    TEST_ASSERT_FALSE(has_at(0, 0));
 }
 
 void test_one_that_is_older_than_those_kept_is_not_known(void) {
