@@ -246,13 +246,19 @@ static void take_latency(argus_t *const self) {
     self->knowledge.late_ms = (uint32_t)argus_latency_oldest_ms(&self->latency);
 }
 
+// Where no mode runs yet, or any more.
+static void take_odometry(argus_knowledge_t *const knowledge, const argus_session_t *const session,
+                          const int32_t unit_um, const uint32_t now_ms) {
+    if (session->origin_due) {
+        argus_knowledge_origin_due(knowledge);
+    }
+    argus_knowledge_odometry(knowledge, &session->sip, unit_um, now_ms);
+}
+
 static void on_sip(argus_t *const self) {
     const int32_t unit_um = argus_session_distance_um(&self->session, self->knowledge.robot->dist_conv_um);
     if (!argus_session_is_open(&self->session) || self->mode == ARGUS_MODE_CLOSED) {
-        if (self->session.origin_due) {
-            argus_knowledge_origin_due(&self->knowledge);
-        }
-        argus_knowledge_odometry(&self->knowledge, &self->session.sip, unit_um, self->now_ms);
+        take_odometry(&self->knowledge, &self->session, unit_um, self->now_ms);
         return;
     }
     take_latency(self);
@@ -279,15 +285,17 @@ static void on_sip(argus_t *const self) {
         }
         argus_run_mode(self);
     }
-    argus_give_up_in_vain(self); // also while it stands for the link
+    if (argus_is_in_vain(self, &self->travel, &self->events)) { // also while it stands for the link
+        argus_stop_and_do(self, ARGUS_STOP_HALT, ARGUS_DO_GIVE_UP, false);
+    }
     note_order(&self->knowledge.order, &self->motion);
     note_watchdog(self, &self->knowledge.order);
 }
 
 // The first one, the second, the fourth and so on: many are one event.
-static void say_copies(argus_t *const self, const uint32_t found) {
+static void say_copies(argus_events_t *const events, const uint32_t found) {
     if ((found & (found - 1)) == 0) {
-        argus_emit(&self->events, ARGUS_EV_SIP_COPIED, (int32_t)(found & 0x7FFFFFFFu));
+        argus_emit(events, ARGUS_EV_SIP_COPIED, (int32_t)(found & 0x7FFFFFFFu));
     }
 }
 
@@ -299,7 +307,7 @@ static void handle_link(argus_t *const self, const unsigned bits) {
         argus_emit(&self->events, ARGUS_EV_SESSION_DISLODGED, 0);
     }
     if ((bits & ARGUS_SESSION_GOT_COPY) != 0) {
-        say_copies(self, self->session.copies.found);
+        say_copies(&self->events, self->session.copies.found);
     }
     if ((bits & ARGUS_SESSION_DID_STALL) != 0) {
         on_stall(self);

@@ -635,16 +635,14 @@ void argus_run_mode(argus_t *const self) {
 }
 
 // Where it stands for a late link that is the reason.
-void argus_give_up_in_vain(argus_t *const self) {
-    if (!argus_journey_is_hopeless(&self->travel, &self->knowledge, is_under_way(self))) {
-        return;
+bool argus_is_in_vain(const argus_t *const self, argus_travel_t *const travel, argus_events_t *const events) {
+    const bool vain = argus_journey_is_hopeless(travel, &self->knowledge, is_under_way(self));
+    if (vain && self->latency.stands) {
+        argus_emit(events, ARGUS_EV_LINK_SLOW, argus_roundtrip_ms(&self->latency.trip, self->now_ms));
+    } else if (vain) {
+        argus_emit(events, ARGUS_EV_NO_WAY, (int32_t)(travel->task.progress.vain_ms / 1000u));
     }
-    if (self->latency.stands) {
-        argus_emit(&self->events, ARGUS_EV_LINK_SLOW, argus_roundtrip_ms(&self->latency.trip, self->now_ms));
-    } else {
-        argus_emit(&self->events, ARGUS_EV_NO_WAY, (int32_t)(self->travel.task.progress.vain_ms / 1000u));
-    }
-    argus_stop_and_do(self, ARGUS_STOP_HALT, ARGUS_DO_GIVE_UP, false);
+    return vain;
 }
 
 static void close_when_at_rest(const argus_t *const self, argus_session_t *const session) {

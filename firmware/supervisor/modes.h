@@ -17,8 +17,9 @@ void argus_react(argus_t *self, const argus_alarm_t *alarm);
 void argus_judge_all(argus_t *self);
 void argus_run_mode(argus_t *self);
 
-// ... and whether the course is to be given up for want of progress, also while no mode may go on.
-void argus_give_up_in_vain(argus_t *self);
+// Whether the course is to be given up for want of progress, also while no mode may go on; the reason is
+// reported.
+bool argus_is_in_vain(const argus_t *self, argus_travel_t *travel, argus_events_t *events);
 
 // Time alone: WAITING says so, CLOSING ends.
 void argus_process_mode(argus_t *self);
