@@ -37,7 +37,7 @@ def sonar_proves(faults: Sequence[str]) -> bool:
         (["off:3", "off:8"], {3: ("off",), 8: ("off",)}),
         (["stuck:5"], {5: ("stuck",)}),
         (["wrong:2:offset=400"], {2: ("wrong",)}),
-        (["wrong:9:angle=30"], {9: ("wrong",)}),
+        (["wrong:9:angle=40"], {9: ("wrong",)}),
         (["silent:6"], {6: ("silent", "")}),
     ],
     ids=["healthy", "two dead", "stuck", "offset", "aside", "silent"],
