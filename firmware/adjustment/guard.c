@@ -298,10 +298,13 @@ bool argus_guard_may_turn(const argus_guard_t *const self) {
 typedef struct {
     int32_t c[NUDGE_PARTS];
     int32_t s[NUDGE_PARTS];
+    uint32_t reach; // of a corner of the body and its room from the centre, squared
 } nudge_t;
 
-static nudge_t nudge_of(const int32_t by_cdeg) {
-    nudge_t nudge;
+static nudge_t nudge_of(const argus_robot_t *const robot, const int32_t by_cdeg) {
+    const int32_t along_mm = argus_max(robot->front_mm, robot->rear_mm) + NUDGE_ROOM_MM + ROUNDING_MM;
+    const int32_t across_mm = argus_robot_half_width_mm(robot) + NUDGE_ROOM_MM + ROUNDING_MM;
+    nudge_t nudge = {.reach = argus_square_of(along_mm, across_mm)};
     for (int32_t i = 0; i < NUDGE_PARTS; i++) {
         nudge.c[i] = argus_cos(by_cdeg * (i + 1) / NUDGE_PARTS);
         nudge.s[i] = argus_sin(by_cdeg * (i + 1) / NUDGE_PARTS);
@@ -309,17 +312,9 @@ static nudge_t nudge_of(const int32_t by_cdeg) {
     return nudge;
 }
 
-// Farther from the centre than a corner of the body and its room: no turn brings the body there.
-static bool is_out_of_reach(const argus_robot_t *const robot, const argus_point_t at) {
-    const int32_t along_mm = argus_max(robot->front_mm, robot->rear_mm) + NUDGE_ROOM_MM;
-    const int32_t across_mm = argus_robot_half_width_mm(robot) + NUDGE_ROOM_MM;
-    return argus_square_of(at.x_mm, at.y_mm) >
-           argus_square_of(along_mm + ROUNDING_MM, across_mm + ROUNDING_MM);
-}
-
 // Turned so far, the body comes too near to a point, which is given in the robot's frame of now.
 static bool is_swept(const argus_robot_t *const robot, const argus_point_t at, const nudge_t *const nudge) {
-    if (is_out_of_reach(robot, at)) {
+    if (argus_square_of(at.x_mm, at.y_mm) > nudge->reach) {
         return false;
     }
     for (int i = 0; i < NUDGE_PARTS; i++) {
@@ -368,7 +363,7 @@ bool argus_guard_may_nudge(const argus_guard_t *const self, const int32_t by_cde
     if (!self->profile->nudges || !self->active || self->bumpers != 0 || argus_abs(by_cdeg) > NUDGE_CDEG) {
         return false;
     }
-    const nudge_t nudge = nudge_of(by_cdeg);
+    const nudge_t nudge = nudge_of(self->knowledge->robot, by_cdeg);
     return !is_heard_in_nudge(self->knowledge, &nudge) && !is_remembered_in_nudge(self, &nudge) &&
            !is_touched_in_nudge(self, &nudge);
 }

@@ -47,12 +47,8 @@ static void put16(uint8_t *const at, const unsigned value) {
     at[1] = (uint8_t)(value >> 8 & 0xFFu);
 }
 
-static uint16_t get16(const uint8_t *const at) {
-    return (uint16_t)(at[0] | (unsigned)at[1] << 8);
-}
-
 static int16_t get_signed(const uint8_t *const at) {
-    const int32_t value = get16(at);
+    const int32_t value = argus_u16_at(at);
     return (int16_t)(value > INT16_MAX ? value - 0x10000 : value);
 }
 
@@ -158,13 +154,13 @@ static argus_record_fault_t check(const uint8_t *const record, const size_t leng
     if (length != length_of(record)) {
         return ARGUS_RECORD_DAMAGED;
     }
-    const bool whole = get16(record + length - CHECK_BYTES) == crc16(record, length - CHECK_BYTES);
+    const bool whole = argus_u16_at(record + length - CHECK_BYTES) == crc16(record, length - CHECK_BYTES);
     return whole ? ARGUS_RECORD_OK : ARGUS_RECORD_DAMAGED;
 }
 
 static void get_history(argus_sonar_t *const s, const uint8_t *const at) {
     s->kind_before = (argus_fault_kind_t)(at[1] < ARGUS_KINDS ? at[1] : 0);
-    s->disabled_before = get16(at + 2);
+    s->disabled_before = argus_u16_at(at + 2);
 }
 
 static void get_evidence(argus_evidence_t *const evidence, const int sonar, const uint8_t *const at,
@@ -184,7 +180,7 @@ static void take_v1(argus_knowledge_t *const knowledge, const uint8_t *const rec
 static void take(argus_knowledge_t *const knowledge, argus_evidence_t *const evidence,
                  argus_record_note_t *const note, const uint8_t *const record) {
     uint32_t mask = 0;
-    note->robot = get16(record + 6) | (uint32_t)get16(record + 8) << 16;
+    note->robot = argus_u16_at(record + 6) | (uint32_t)argus_u16_at(record + 8) << 16;
     for (int i = 0; i < taken_of(record); i++) {
         const uint8_t *const at = record + HEAD_BYTES + i * SONAR_BYTES;
         const bool out = at[0] == ARGUS_DISABLED || at[0] == ARGUS_PROBATION;

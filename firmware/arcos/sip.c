@@ -4,12 +4,10 @@
 
 #include "argus/argus.h"
 
-// Offsets of the tables count from the header; those of a packet's data from its type.
-#define DATA_OFFSET(offset) ((offset) - ARCOS_SIP_OFFSET_TYPE)
 #define AFTER_SONAR(name) ((size_t)ARCOS_SIP_AFTER_SONAR_##name)
 
 static uint16_t u16_at(const uint8_t *data, size_t offset) {
-    return (uint16_t)(data[offset] | data[offset + 1] << 8);
+    return argus_u16_at(data + offset);
 }
 
 static int16_t i16_at(const uint8_t *data, size_t offset) {
@@ -18,20 +16,20 @@ static int16_t i16_at(const uint8_t *data, size_t offset) {
 }
 
 static void decode_fixed(argus_sip_t *sip, const uint8_t *data) {
-    const uint8_t left = data[DATA_OFFSET(ARCOS_SIP_OFFSET_STALL_LEFT)];
-    const uint8_t right = data[DATA_OFFSET(ARCOS_SIP_OFFSET_STALL_RIGHT)];
+    const uint8_t left = data[ARGUS_SIP_AT(STALL_LEFT)];
+    const uint8_t right = data[ARGUS_SIP_AT(STALL_RIGHT)];
     sip->moving = data[0] == ARCOS_TYPE_SIP_MOVING;
-    sip->x_raw = u16_at(data, DATA_OFFSET(ARCOS_SIP_OFFSET_X));
-    sip->y_raw = u16_at(data, DATA_OFFSET(ARCOS_SIP_OFFSET_Y));
-    sip->heading_raw = i16_at(data, DATA_OFFSET(ARCOS_SIP_OFFSET_TH));
-    sip->vel_left_mm_s = i16_at(data, DATA_OFFSET(ARCOS_SIP_OFFSET_L_VEL));
-    sip->vel_right_mm_s = i16_at(data, DATA_OFFSET(ARCOS_SIP_OFFSET_R_VEL));
-    sip->battery_dv = data[DATA_OFFSET(ARCOS_SIP_OFFSET_BATTERY)];
+    sip->x_raw = u16_at(data, ARGUS_SIP_AT(X));
+    sip->y_raw = u16_at(data, ARGUS_SIP_AT(Y));
+    sip->heading_raw = i16_at(data, ARGUS_SIP_AT(TH));
+    sip->vel_left_mm_s = i16_at(data, ARGUS_SIP_AT(L_VEL));
+    sip->vel_right_mm_s = i16_at(data, ARGUS_SIP_AT(R_VEL));
+    sip->battery_dv = data[ARGUS_SIP_AT(BATTERY)];
     sip->stall_left = (left & ARCOS_SIP_STALL_BIT) != 0;
     sip->stall_right = (right & ARCOS_SIP_STALL_BIT) != 0;
     sip->bumpers_rear = left & ARCOS_SIP_BUMPER_MASK;
     sip->bumpers_front = right & ARCOS_SIP_BUMPER_MASK;
-    sip->flags = u16_at(data, DATA_OFFSET(ARCOS_SIP_OFFSET_FLAGS));
+    sip->flags = u16_at(data, ARGUS_SIP_AT(FLAGS));
 }
 
 static void decode_sonar(argus_sip_t *sip, const uint8_t *data) {
@@ -56,12 +54,12 @@ static void decode_tail(argus_sip_t *sip, const uint8_t *tail, size_t count) {
 
 bool argus_sip_decode(argus_sip_t *sip, const argus_packet_t *packet) {
     const uint8_t *data = packet->data;
-    const size_t sonar_offset = DATA_OFFSET(ARCOS_SIP_OFFSET_SONAR);
+    const size_t sonar_offset = ARGUS_SIP_AT(SONAR);
     if (packet->count < sonar_offset ||
         (data[0] != ARCOS_TYPE_SIP_STATIONARY && data[0] != ARCOS_TYPE_SIP_MOVING)) {
         return false;
     }
-    sip->sonar_count = data[DATA_OFFSET(ARCOS_SIP_OFFSET_SONAR_COUNT)];
+    sip->sonar_count = data[ARGUS_SIP_AT(SONAR_COUNT)];
     const size_t tail_offset = sonar_offset + (size_t)sip->sonar_count * ARCOS_SIP_SONAR_BYTES;
     if (tail_offset > packet->count) {
         return false;

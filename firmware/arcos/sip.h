@@ -5,6 +5,9 @@
 
 #include "arcos/frame.h"
 
+// Where a field lies in the data of a SIP: the table counts from the header, data from the type.
+#define ARGUS_SIP_AT(name) (ARCOS_SIP_OFFSET_##name - ARCOS_SIP_OFFSET_TYPE)
+
 #define ARGUS_SIP_SONARS_MAX 84 // what fits into the longest packet
 
 typedef struct {

@@ -167,19 +167,12 @@ static verdict_t verdict_of(const tally_t *const tally) {
     return tally->quiet > 0 ? QUIET : UNSEEN;
 }
 
-static int take_sonar(argus_mask_t *const left) {
-    ARGUS_ASSERT(*left != 0);
-    const int sonar = 31 - argus_leading_zeros(*left);
-    *left &= (argus_mask_t) ~(1u << sonar);
-    return sonar;
-}
-
 // Of those that contradict an echo by their silence: whether each has told so since it heard something last.
-static bool have_told(const argus_evidence_t *const self, const int sonar, argus_mask_t left) {
+static bool have_told(const argus_evidence_t *const self, const int sonar, uint32_t left) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     bool have = true;
     while (left != 0 && have) {
-        have = (self->told[take_sonar(&left)] >> sonar & 1u) != 0;
+        have = (self->told[argus_take_highest(&left)] >> sonar & 1u) != 0;
     }
     return have;
 }
@@ -195,10 +188,10 @@ static verdict_t unless_told(const argus_evidence_t *const self, const int sonar
 }
 
 // They have told now, by their silence alone.
-static void tell(argus_evidence_t *const self, const int sonar, argus_mask_t left) {
+static void tell(argus_evidence_t *const self, const int sonar, uint32_t left) {
     ARGUS_ASSERT(sonar >= 0 && sonar < ARGUS_SONARS);
     while (left != 0) {
-        self->told[take_sonar(&left)] |= (argus_mask_t)(1u << sonar);
+        self->told[argus_take_highest(&left)] |= (argus_mask_t)(1u << sonar);
     }
 }
 
@@ -228,9 +221,9 @@ static int32_t deafness_of(const argus_evidence_t *const self, const int sonar, 
         return argus_odds_deaf_permille(self, sonar);
     }
     int32_t least = tally->heard ? 0 : 1000;
-    argus_mask_t left = tally->against;
+    uint32_t left = tally->against;
     while (left != 0 && least > 0) {
-        least = argus_min(least, argus_odds_deaf_permille(self, take_sonar(&left)));
+        least = argus_min(least, argus_odds_deaf_permille(self, argus_take_highest(&left)));
     }
     return least;
 }

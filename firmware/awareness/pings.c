@@ -73,13 +73,8 @@ int32_t argus_ping_predict_mm(const argus_ping_t *const now, const argus_ping_t 
     return then->reading_mm - argus_ping_shift(now, then).along_mm;
 }
 
-// One unsigned comparison each: most of what a moving robot saw was seen from elsewhere.
-static bool is_close(const uint16_t a_mm, const uint16_t b_mm, const int32_t mm) {
-    return (uint16_t)((uint32_t)a_mm - b_mm + (uint32_t)mm) <= (uint32_t)(2 * mm);
-}
-
 bool argus_ping_is_within(const argus_ping_t *const a, const argus_ping_t *const b, const int32_t mm) {
-    return is_close(a->x_mm, b->x_mm, mm) && is_close(a->y_mm, b->y_mm, mm);
+    return argus_is_close(a->x_mm, b->x_mm, mm) && argus_is_close(a->y_mm, b->y_mm, mm);
 }
 
 static unsigned sector_of(const int32_t bearing_cdeg) {
